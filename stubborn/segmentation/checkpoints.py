@@ -18,12 +18,11 @@ from torch import Tensor
 from sim.core.interface import ConfigError
 from sim.core.reading import Number, convert
 from stubborn.network_files import read_checkpoint, read_weights, with_weights, write_weights
-from stubborn.segmentation.networks import FAMILIES, Architecture, Network, build_network, family
-from stubborn.segmentation.rednet import PUBLISHED
+from stubborn.segmentation.rednet import PUBLISHED, RedNet, RedNetConfig
 
 _WRAPPERS = ("model_state", "state_dict", "model")
 _PARALLEL_PREFIX = "module."
-_CONFIG_KEY = "{family}_config"
+_CONFIG_KEY = "rednet_config"
 MAX_SIZE = 4096
 """Largest number of channels, blocks or classes that a header may give."""
 
@@ -41,7 +40,7 @@ class _Metadata(msgspec.Struct):
     calibration: _Calibration | None = None
 
 
-def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None = None) -> None:
+def save_network(file: Path, model: RedNet, metadata: Mapping[str, Any] | None = None) -> None:
     """Writes weights, with 16 bits, and the size of the network as safetensors. The file is replaced in one step.
 
     Args:
@@ -49,11 +48,10 @@ def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None 
         model: the network.
         metadata: values that JSON can hold, for the file's header.
     """
-    key = _CONFIG_KEY.format(family=family(model))
-    write_weights(file, model, {key: asdict(model.config)} | dict(metadata or {}))
+    write_weights(file, model, {_CONFIG_KEY: asdict(model.config)} | dict(metadata or {}))
 
 
-def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
+def load_network(file: Path) -> tuple[RedNet, dict[str, Any]]:
     """Returns a network in evaluation mode with the weights of a file, and the file's metadata.
 
     Our `.safetensors` files hold the configuration of their network; any other file must hold the published RedNet.
@@ -70,10 +68,10 @@ def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
     convert(metadata, _Metadata, where=f"Weights '{file}', header")
     config = _config(file, metadata)
     tensors = unwrap(tensors, file)
-    return with_weights(file, tensors, lambda: build_network(config)), metadata
+    return with_weights(file, tensors, lambda: RedNet(config)), metadata
 
 
-def mean_of(networks: Sequence[Network]) -> Network:
+def mean_of(networks: Sequence[RedNet]) -> RedNet:
     """Returns a network with the mean of the weights of networks of one configuration.
 
     Integers, such as the counts of batches, are those of the last network.
@@ -103,28 +101,24 @@ def unwrap(content: Mapping[str, Any], file: Path) -> dict[str, Tensor]:
     return tensors
 
 
-def _config(file: Path, metadata: dict[str, Any]) -> Architecture:
+def _config(file: Path, metadata: dict[str, Any]) -> RedNetConfig:
     """Takes the configuration of the network out of the metadata and returns it; by default the published one.
 
     Raises:
         ConfigError: the stored configuration does not belong to a network of this project.
     """
-    for name, (config_class, _) in FAMILIES.items():
-        stored = metadata.pop(_CONFIG_KEY.format(family=name), None)
-        if stored is None:
-            continue
-        where = f"Weights '{file}' do not describe a network of this project"
-        unknown = (
-            sorted(set(stored) - {field.name for field in fields(config_class)}) if isinstance(stored, dict) else ()
-        )
-        if unknown:
-            raise ConfigError(f"{where}: field '{unknown[0]}' is unknown.")
-        config = convert(stored, config_class, where=where)
-        largest = max(_whole_numbers(asdict(config)))
-        if largest > MAX_SIZE:
-            raise ConfigError(f"{where}: a size of {largest}, at most {MAX_SIZE} is allowed.")
-        return config
-    return PUBLISHED
+    stored = metadata.pop(_CONFIG_KEY, None)
+    if stored is None:
+        return PUBLISHED
+    where = f"Weights '{file}' do not describe a network of this project"
+    unknown = sorted(set(stored) - {field.name for field in fields(RedNetConfig)}) if isinstance(stored, dict) else ()
+    if unknown:
+        raise ConfigError(f"{where}: field '{unknown[0]}' is unknown.")
+    config = convert(stored, RedNetConfig, where=where)
+    largest = max(_whole_numbers(asdict(config)))
+    if largest > MAX_SIZE:
+        raise ConfigError(f"{where}: a size of {largest}, at most {MAX_SIZE} is allowed.")
+    return config
 
 
 def _whole_numbers(values: Mapping[str, Any]) -> Iterator[int]:

@@ -16,7 +16,6 @@ from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.inputs import INPUTS
 from stubborn.segmentation.names import NameGroups
-from stubborn.segmentation.networks import Network
 from stubborn.segmentation.preprocess import normalise_rgb, padding, shrink
 from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.rednet import RedNet, folded
@@ -31,10 +30,9 @@ class _Frame(NamedTuple):
     """What the head for names takes; empty without such a head."""
 
 
-def block_px_of(model: Network, metadata: Mapping[str, Any]) -> int:
+def block_px_of(model: RedNet, metadata: Mapping[str, Any]) -> int:
     """Returns the edge of the block of camera pixels that one input pixel of a stored network stands for."""
-    whole = isinstance(model, RedNet) and model.config.bottleneck  # the published network saw whole images
-    return int(metadata.get("block_px", 1 if whole else 2))
+    return int(metadata.get("block_px", 1 if model.config.bottleneck else 2))  # the published one saw whole images
 
 
 class NetworkSegmenter:
@@ -44,21 +42,21 @@ class NetworkSegmenter:
         model: the network, in evaluation mode.
         camera: gives the field of view, the height and the range of the depth image.
         block_px: the network's input is the image shrunk by this factor.
-        score_block_px: edge of the image block of one score; None: 4, or the network's own if it is larger.
+        score_block_px: edge of the image block of one score; None: 4, or `block_px` if it is larger.
         calibration: applied to the logits before the softmax; None changes nothing.
         threads: number of PyTorch's threads in this process; None does not change it.
         mirrored: True averages the logits of the image and of its mirror image, which are computed as one batch, and
             in bf16 where the processor has instructions for it.
 
     Raises:
-        ConfigError: `score_block_px` is not a multiple of the block of one logit of the network.
+        ConfigError: `block_px` is less than 1 or does not divide `score_block_px`.
     """
 
     spec = SegmenterSpec(sensors=("rgb",))
 
     def __init__(
         self,
-        model: Network,
+        model: RedNet,
         *,
         camera: CameraModel | None = None,
         block_px: int = 2,
@@ -67,17 +65,14 @@ class NetworkSegmenter:
         threads: int | None = None,
         mirrored: bool = False,
     ) -> None:
-        finest_px = block_px * model.stride_px
-        score_block_px = score_block_px or max(4, finest_px)
-        if block_px < 1 or score_block_px % finest_px:
+        score_block_px = score_block_px or max(4, block_px)
+        if block_px < 1 or score_block_px % block_px:
             raise ConfigError(
-                f"score_block_px must be a multiple of the block of one logit, {finest_px} pixels for block_px "
-                f"{block_px}; got {score_block_px}."
+                f"block_px must be at least 1 and divide score_block_px, got {block_px} and {score_block_px}."
             )
         if threads is not None:
             torch.set_num_threads(threads)
         self.second = INPUTS[model.config.second]
-        self.stride_px = model.stride_px
         self.model = folded(model)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.camera = camera or CameraModel()
@@ -85,11 +80,10 @@ class NetworkSegmenter:
         self.mirrored = mirrored
         self.bf16 = mirrored and computes_bf16()
         self.calibration = calibration or Calibration.of_temperature(1.0)
-        every = score_block_px // finest_px
+        every = score_block_px // block_px
         self._middle = slice(every // 2, None, every)
         self._last: _Frame | None = None
-        names = model.config.names if isinstance(model, RedNet) else ()
-        self._names = NameGroups.of(names) if names else None
+        self._names = NameGroups.of(model.config.names) if model.config.names else None
 
     @classmethod
     def from_file(
@@ -146,11 +140,12 @@ class NetworkSegmenter:
 
         A probability is for 4 x 4 pixels of the network's input. None: the network has no head for names.
         """
-        if self._names is None:
+        head = self.model.names_head
+        if head is None or self._names is None:
             return None
         frame = self._seen(observation)
         with torch.inference_mode(), torch.autocast("cpu", torch.bfloat16, enabled=self.bf16):
-            logits = self.model.names_head(frame.stages)[0].float()  # pyright: ignore[reportCallIssue]
+            logits = head(frame.stages)[0].float()
         size = (observation["depth"].shape[0] // self.block_px, observation["depth"].shape[1] // self.block_px)
         image = logits[:, *padding(*size).quarter(*size)]
         return self._names.probabilities(image.numpy(), frame.posteriors), self._names.names
@@ -169,7 +164,7 @@ class NetworkSegmenter:
     def logits(
         self, rgb: UInt8[np.ndarray, "h w 3"], depth_m: Float32[np.ndarray, "h w"]
     ) -> Float[Tensor, "classes rows cols"]:
-        """Returns the logits of one frame; each is for a square of `block_px` times the network's stride."""
+        """Returns the logits of one frame; each is for a square of `block_px` pixels."""
         return self._pass(rgb, depth_m)[0]
 
     def _pass(
@@ -189,10 +184,10 @@ class NetworkSegmenter:
             second = second.to(memory_format=torch.channels_last)
             stages = list[Tensor]()
             if self._names is None:
-                out = self.model.pyramid(colour, second, sides=False)[0].float()  # pyright: ignore[reportCallIssue]
+                out = self.model.pyramid(colour, second, sides=False)[0].float()
             else:
-                stages, last = self.model.features(colour, second)  # pyright: ignore[reportCallIssue]
-                out = self.model.final_deconv_custom(last).float()  # pyright: ignore[reportCallIssue]
+                stages, last = self.model.features(colour, second)
+                out = self.model.final_deconv_custom(last).float()
         pad = padding(*small_depth.shape)
-        own = out[:, :, *(pad.inner if self.stride_px == 1 else pad.inner_half)]
+        own = out[:, :, *pad.inner]
         return 0.5 * (own[0] + own[1].flip(-1)) if self.mirrored else own[0], [stage[:1] for stage in stages]

@@ -1,4 +1,4 @@
-"""Names the networks that can be trained, and builds a network from its configuration."""
+"""Names the networks that can be trained, and adapts a network to other inputs and outputs."""
 
 from __future__ import annotations
 
@@ -10,31 +10,16 @@ import torch
 
 from sim.core.interface import ConfigError
 from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig
-from stubborn.segmentation.unet import UNet, UNetConfig
 
-Network = RedNet | UNet
-"""A network with `forward` (logits at full size), `pyramid` (logits at several sizes) and `config`."""
-Architecture = RedNetConfig | UNetConfig
-FAMILIES: Mapping[str, tuple[type[RedNetConfig], type[RedNet]] | tuple[type[UNetConfig], type[UNet]]] = (
-    MappingProxyType({"rednet": (RedNetConfig, RedNet), "unet": (UNetConfig, UNet)})
-)
-"""Class of configuration and class of network, by the name that files of weights store."""
-NETWORKS: Mapping[str, Architecture] = MappingProxyType(
+NETWORKS: Mapping[str, RedNetConfig] = MappingProxyType(
     {
         "compact": COMPACT,
         "compact-geometry": replace(COMPACT, second="geometry"),
         "compact-both": replace(COMPACT, second="depth-geometry"),
         "published": PUBLISHED,
-        "unet": UNetConfig(),
-        "lite0": UNetConfig(encoder="lite0", widths=(8, 16, 24, 48, 96), decoder=(16, 32, 48, 80)),
     }
 )
 """Configurations by the name that `--size` of `stubborn train segmentation` takes."""
-
-
-def build_network(config: Architecture) -> Network:
-    """Returns a network with random weights."""
-    return UNet(config) if isinstance(config, UNetConfig) else RedNet(config)
 
 
 def with_geometry(network: RedNet) -> RedNet:
@@ -59,8 +44,3 @@ def without_names(network: RedNet) -> RedNet:
     bare = RedNet(replace(network.config, names=()))
     bare.load_state_dict({key: value for key, value in network.state_dict().items() if "names_head" not in key})
     return bare.train(network.training)
-
-
-def family(network: Network) -> str:
-    """Returns the name of a network's family."""
-    return next(name for name, (_, made) in FAMILIES.items() if isinstance(network, made))

@@ -37,11 +37,6 @@ class Padding(NamedTuple):
         top, left = self.top // 4, self.left // 4
         return slice(top, top + height_px // 4), slice(left, left + width_px // 4)
 
-    @property
-    def inner_half(self) -> tuple[slice, slice]:
-        """Rows and columns of the image in the padded image at half its size."""
-        return slice(self.top // 2, -(self.bottom // 2) or None), slice(self.left // 2, -(self.right // 2) or None)
-
 
 def require_whole_strides(height_px: int, width_px: int) -> None:
     """Raises ConfigError if height or width is not a multiple of `STRIDE_PX`."""

@@ -162,9 +162,6 @@ class NamesHead(nn.Module):
 class RedNet(nn.Module):
     """A network that computes class logits from colour and depth (or geometric channels), normalised."""
 
-    stride_px = 1
-    """Edge of the square of input pixels that one logit of the finest output stands for."""
-
     def __init__(self, config: RedNetConfig = PUBLISHED) -> None:
         super().__init__()
         self.config = config
@@ -276,7 +273,7 @@ class RedNet(nn.Module):
                     nn.init.zeros_(module.bias)
 
 
-def folded(model: nn.Module) -> nn.Module:
+def folded(model: RedNet) -> RedNet:
     """Returns a copy for inference; its batch normalisations are part of the convolutions before them.
 
     The copy is faster and cannot be trained. Its outputs differ from the model's by rounding only. It shares the

@@ -16,8 +16,7 @@ from torch import Tensor
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID
 from sim.training.segmentation.samples import SURFACES
 from stubborn.segmentation.calibration import fit_calibration
-from stubborn.segmentation.networks import Network
-from stubborn.segmentation.rednet import CLASSES
+from stubborn.segmentation.rednet import CLASSES, RedNet
 
 GOAL_CHANNELS = np.array([MPCAT40_ID[name] - 1 for name in GOAL_CATEGORIES])
 """Output channels of the goal categories."""
@@ -184,7 +183,7 @@ class Evaluation(NamedTuple):
 
 
 def evaluate(
-    model: Network,
+    model: RedNet,
     batches: Iterable[tuple[Tensor, Tensor, Tensor]],
     *,
     device: torch.device,

@@ -130,8 +130,6 @@ class Trainer(TimedTraining):
         shards, val_shards = ([file for folder in folders for file in list_shards(folder)] for folders in
                               (args.views, args.val_views))  # fmt: skip
         network, self._metadata = load_network(args.weights or SHIPPED_REDNET)
-        if not isinstance(network, RedNet):
-            raise ConfigError(f"--weights '{args.weights}' are not of a RedNet, which can have a head for names.")
         index, val_index = (ViewIndex.of(files, label_of=known_name) for files in (shards, val_shards))
         counts = {name: sum(map(len, styles.values())) for name, styles in index.objects.items()}
         often = tuple(sorted(name for name, count in counts.items() if count >= MIN_OBJECTS))

@@ -31,8 +31,7 @@ class Args:
     furniture: Path | None = None
     """Without --views: a folder of imported models (`stubborn import furniture`) for the houses of the views."""
     size: str | None = None
-    """Network: compact, compact-geometry, compact-both, published, unet, lite0. None: that of --init, else
-    compact-both."""
+    """Network: compact, compact-geometry, compact-both, published. None: that of --init, else compact-both."""
     init: Path | None = None
     """Initial weights: `shipped`, a file of this tool, or a checkpoint of the published network. compact-both also
     takes those of compact, and starts with their output."""

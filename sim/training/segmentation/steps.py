@@ -13,7 +13,7 @@ from torch.optim.swa_utils import get_ema_multi_avg_fn
 
 from sim.training.segmentation.samples import IGNORED
 from stubborn.segmentation.checkpoints import load_network, mean_of, save_network
-from stubborn.segmentation.networks import Network
+from stubborn.segmentation.rednet import RedNet
 
 PREFIX = "step-"
 
@@ -127,7 +127,7 @@ class AveragedCheckpoints:
     def __init__(self, folder: Path, most: int, share: float = 1.0) -> None:
         self._folder, self._most, self._share = folder, most, share
 
-    def add(self, network: Network, step: int) -> Network:
+    def add(self, network: RedNet, step: int) -> RedNet:
         """Stores the network of a step and returns a new one with the mean weights of the last networks."""
         save_network(self._folder / f"{PREFIX}{step:07d}.safetensors", network)
         files = self._files()

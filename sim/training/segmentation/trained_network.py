@@ -8,7 +8,7 @@ import torch
 
 from sim.core.interface import ConfigError
 from stubborn.segmentation.checkpoints import load_network
-from stubborn.segmentation.networks import NETWORKS, Network, build_network, with_geometry, without_names
+from stubborn.segmentation.networks import NETWORKS, with_geometry, without_names
 from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.shipped import SHIPPED_REDNET
@@ -18,7 +18,7 @@ OF_TRAINING = ("step", "hours", "options", "code", "averaged", "started_from")
 """Metadata of a network that say how it was trained; the networks that are trained further keep them."""
 
 
-def start_network(size: str | None, init: Path | None) -> tuple[str, Network, dict[str, object]]:
+def start_network(size: str | None, init: Path | None) -> tuple[str, RedNet, dict[str, object]]:
     """Returns the size of the network to train, the network, and the metadata of its earlier training.
 
     Args:
@@ -30,11 +30,10 @@ def start_network(size: str | None, init: Path | None) -> tuple[str, Network, di
     """
     if init is None:
         size = size or DEFAULT_SIZE
-        return size, build_network(NETWORKS[size]), {}
+        return size, RedNet(NETWORKS[size]), {}
     model, metadata = load_network(SHIPPED_REDNET if init == Path("shipped") else init)
-    if isinstance(model, RedNet):
-        model = without_names(model)
-    if size == "compact-both" and isinstance(model, RedNet) and model.config == NETWORKS["compact"]:
+    model = without_names(model)
+    if size == "compact-both" and model.config == NETWORKS["compact"]:
         model = with_geometry(model)
     known = next((name for name, config in NETWORKS.items() if config == model.config), None)
     if known is None or size not in (None, known):

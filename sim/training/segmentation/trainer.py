@@ -43,7 +43,6 @@ from sim.training.training_files import (
     save_state,
 )
 from stubborn.segmentation.checkpoints import save_network
-from stubborn.segmentation.networks import Network
 from stubborn.segmentation.rednet import RedNet
 
 RECIPE = PROGRESSIVE
@@ -246,9 +245,7 @@ class Trainer:
         return loss.detach()
 
     def _loss(self, rgb: Tensor, second: Tensor, target: Tensor, pixels: Tensor) -> Tensor:
-        """Returns the loss; the finest output of a RedNet is trained on one random pixel of each 2 x 2 block."""
-        if not isinstance(self.model, RedNet):
-            return pyramid_loss(self.model.pyramid(rgb, second), target, self.weights, pixels=pixels)
+        """Returns the loss; the finest output is trained on one random pixel of each 2 x 2 block."""
         row, column = divmod(int(np.random.default_rng([self.args.seed, 2, self.step]).integers(4)), 2)
         outputs = self.model.pyramid(rgb, second, subpixel=(row, column))
         return pyramid_loss(outputs, target, self.weights, subpixel=(row, column), pixels=pixels)
@@ -272,9 +269,9 @@ class Trainer:
         self._evaluation_s = time.perf_counter() - began_s
         self._save_state()
 
-    def _usable(self) -> Network:
+    def _usable(self) -> RedNet:
         """Returns the mean of the averaged weights at this and the last evaluations, normalised for whole views."""
-        now: Network = self.average.module  # pyright: ignore[reportAssignmentType] - the same class
+        now: RedNet = self.average.module  # pyright: ignore[reportAssignmentType] - the same class
         network = self.checkpoints.add(now, self.step).to(self.device)
         loader = DataLoader(self.whole, batch_size=16)
         set_normalisation(network, ((rgb.to(self.device), second.to(self.device)) for rgb, second, _ in loader))

@@ -137,6 +137,7 @@ def test_weights_without_meaning_are_refused_by_name(value: float, dtype: torch.
         ({"rednet_config": {"depth": 4}}, "field 'depth' is unknown"),
         ({"rednet_config": 7}, "expected object, got int"),
         ({"rednet_config": {"encoder_blocks": [0, 1, 1, 1]}}, "at least one channel"),
+        ({"poni_config": {"widths": [8]}}, "of another network: 'conv1.weight' is"),
         ({"block_px": 0}, "header, field 'block_px': expected int >= 1"),
         ({"block_px": "x"}, "field 'block_px'"),
         ({"temperature": -1.0}, "field 'temperature'"),

@@ -109,7 +109,7 @@ def test_unknown_goals_and_wrong_block_sizes_are_refused(model: RedNet, frame: d
     for goal in ("unicorn", "void"):
         with pytest.raises(ConfigError, match=f"no category '{goal}'"):
             NetworkSegmenter(model).scores(frame, goal)
-    with pytest.raises(ConfigError, match=wording.MULTIPLE_OF_THE_BLOCK_OF_ONE_LOGIT_3_PIXELS):
+    with pytest.raises(ConfigError, match="score_block_px, got 3 and 4"):
         NetworkSegmenter(model, block_px=3, score_block_px=4)
     with pytest.raises(ConfigError, match=wording.TEMPERATURE_MUST_BE_0):
         Calibration.of_temperature(0.0)

@@ -19,10 +19,9 @@ from sim.training.segmentation.evaluation import GOAL_CHANNELS, Confusions, Iou,
 from sim.training.segmentation.options import Args
 from sim.training.training_files import read_columns
 from stubborn.segmentation.calibration import Calibration
-from stubborn.segmentation.networks import Network
-from stubborn.segmentation.unet import UNet
+from stubborn.segmentation.rednet import RedNet
 
-ABOUT = """A {kind} ({parameters:,} parameters, {size_mb:.1f} MB) for images of {width} x {height} pixels and
+ABOUT = """A RedNet ({parameters:,} parameters, {size_mb:.1f} MB) for images of {width} x {height} pixels and
 the categories of mpcat40. Brackets hold the 95 % interval over houses. The calibration was evaluated on the half of the
 houses to which it was not fitted. If the checkpoint was chosen by views of these houses as well, the mIoU is
 optimistic."""
@@ -36,7 +35,7 @@ class Evaluated:
     """The network that was evaluated."""
 
     file: Path
-    model: Network
+    model: RedNet
     metadata: Mapping[str, object]
     threads: int
 
@@ -109,7 +108,6 @@ def card_text(network: Evaluated, measured: Measured) -> str:
 def _about(network: Evaluated, block_px: int) -> Iterable[str]:
     yield f"# {network.file.name}\n"
     yield ABOUT.format(
-        kind="U-Net" if isinstance(network.model, UNet) else "RedNet",
         parameters=sum(tensor.numel() for tensor in network.model.parameters()),
         size_mb=network.file.stat().st_size / 1e6,
         width=640 // block_px,

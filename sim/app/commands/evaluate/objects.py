@@ -28,8 +28,8 @@ from sim.core.interface import GOAL_CATEGORIES, MPCAT40
 from sim.training.segmentation.dataset import GOAL_IDS, LabelledView, list_shards, read_shard, stored_block_px, tile
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network
-from stubborn.segmentation.networks import Network
 from stubborn.segmentation.preprocess import padding, shrink
+from stubborn.segmentation.rednet import RedNet
 
 WIDTH_PX = 400
 FRAME = (255, 0, 200)
@@ -87,7 +87,7 @@ def main(args: Args) -> int:
     return 0
 
 
-def missed_objects(shards: Sequence[Path], model: Network, block_px: int, calibration: Calibration) -> Iterator[Missed]:
+def missed_objects(shards: Sequence[Path], model: RedNet, block_px: int, calibration: Calibration) -> Iterator[Missed]:
     """Yields the objects of goal categories that a network, calibrated as agents use it, misses in part.
 
     Raises:

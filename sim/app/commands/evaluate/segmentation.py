@@ -42,9 +42,8 @@ from sim.training.segmentation.samples import NONE, Sampler, Samples
 from stubborn.segmentation.calibration import Calibration, fit_calibration
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.network import NetworkSegmenter
-from stubborn.segmentation.networks import Network
 from stubborn.segmentation.preprocess import padding, shrink
-from stubborn.segmentation.rednet import CLASSES
+from stubborn.segmentation.rednet import CLASSES, RedNet
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
 TIMED_FRAMES = 30
@@ -163,7 +162,7 @@ def _evaluate_own(args: Args, semantics: str) -> int:
     return 0
 
 
-def measure(args: Args, model: Network, metadata: Mapping[str, object]) -> Measured:
+def measure(args: Args, model: RedNet, metadata: Mapping[str, object]) -> Measured:
     """Returns the results of a network on the views of some folders.
 
     Raises:
@@ -218,7 +217,7 @@ def comparison_lines(args: Args, ours: Confusions, against: Path) -> Iterator[st
         yield from (f"{name}: {ours.difference_text(theirs, name)}" for name in names)
 
 
-def predict(args: Args, model: Network, block_px: int, calibration: Calibration) -> Predictions:
+def predict(args: Args, model: RedNet, block_px: int, calibration: Calibration) -> Predictions:
     """Returns the predictions of a network on the views of the folders of `args`; each is computed once.
 
     Raises:
@@ -240,7 +239,7 @@ def predict(args: Args, model: Network, block_px: int, calibration: Calibration)
 
 
 def _predicted(
-    model: Network, views: Sequence[LabelledView], block_px: int, stored_px: int, mirror: bool
+    model: RedNet, views: Sequence[LabelledView], block_px: int, stored_px: int, mirror: bool
 ) -> Iterator[tuple[LabelledView, Tensor, Tensor]]:
     """Yields each view with its logits (classes, h, w) and class channels (h, w), both padded."""
     batches = loader(model, views, block_px, stored_px)
@@ -287,7 +286,7 @@ def _joined(seen: Predictions, houses: Sequence[str]) -> tuple[Tensor, Tensor]:
     return torch.cat([logits for logits, _ in pairs]), torch.cat([truth for _, truth in pairs])
 
 
-def loader(model: Network, views: Sequence[LabelledView], block_px: int, stored_px: int) -> DataLoader:
+def loader(model: RedNet, views: Sequence[LabelledView], block_px: int, stored_px: int) -> DataLoader:
     """Returns batches of views at the network's resolution.
 
     Raises:
@@ -301,7 +300,7 @@ def loader(model: Network, views: Sequence[LabelledView], block_px: int, stored_
     return DataLoader(Samples(views, sampler), batch_size=BATCH)
 
 
-def frame_ms(model: Network, block_px: int, *, mirrored: bool = False) -> float:
+def frame_ms(model: RedNet, block_px: int, *, mirrored: bool = False) -> float:
     """Returns the median time of one frame in milliseconds, from 640 x 480 images to scores."""
     segmenter = NetworkSegmenter(model, block_px=block_px, mirrored=mirrored)
     rng = np.random.default_rng(0)

@@ -8,8 +8,8 @@ stubborn train segmentation --size published --block-px 1 --init rednet_semmap_m
 
 The first command makes the views as well (`stubborn views mix`) and trains by the recipe of
 `sim.training.segmentation.recipe`: small windows, larger ones, then whole views; each sample is drawn by category,
-style and object; rare categories and small objects weigh more; a step trains the finest output of a RedNet on one of
-the four pixels of each 2 x 2 block.
+style and object; rare categories and small objects weigh more; a step trains the finest output on one of the four
+pixels of each 2 x 2 block.
 
 The same command continues a killed run, with the same result; views that were added in the meantime are used as well.
 `state.pt` holds weights, their average, optimiser and step; `step-*.safetensors` are the averaged weights of the last

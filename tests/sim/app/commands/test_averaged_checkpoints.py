@@ -8,16 +8,15 @@ import pytest
 import torch
 
 from sim.training.segmentation.steps import AveragedCheckpoints
-from stubborn.segmentation.networks import build_network
-from stubborn.segmentation.unet import UNetConfig
+from stubborn.segmentation.rednet import RedNet, RedNetConfig
 
-TINY = UNetConfig(widths=(2, 2, 2, 2, 2), blocks=(1, 1, 1, 1), decoder=(2, 2, 2, 2))
+TINY = RedNetConfig(width=2, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
 
 
 def test_the_last_networks_are_kept_and_averaged_and_later_ones_removed(tmp_path: Path) -> None:
     checkpoints, means = AveragedCheckpoints(tmp_path, 3), []
     for number in (1, 2, 3, 6):
-        network = build_network(TINY)
+        network = RedNet(TINY)
         for parameter in network.parameters():
             torch.nn.init.constant_(parameter, float(number))
         mean = checkpoints.add(network, 1000 * number)
@@ -33,7 +32,7 @@ def test_the_last_networks_are_kept_and_averaged_and_later_ones_removed(tmp_path
 def test_only_networks_of_the_last_share_of_the_steps_are_averaged(tmp_path: Path) -> None:
     checkpoints = AveragedCheckpoints(tmp_path, 3, share=0.1)
     for step, expected in ((500, 1.0), (950, 2.0), (1000, 2.5)):
-        network = build_network(TINY)
+        network = RedNet(TINY)
         for parameter in network.parameters():
             torch.nn.init.constant_(parameter, {500: 1.0, 950: 2.0, 1000: 3.0}[step])
         mean = checkpoints.add(network, step)

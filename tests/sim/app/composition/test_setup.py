@@ -24,7 +24,8 @@ from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.detection.seeker import Seeker, SeekerParts, TargetSeekerConfig
 from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.segmentation.networks import NETWORKS, build_network
+from stubborn.segmentation.networks import NETWORKS
+from stubborn.segmentation.rednet import RedNet
 
 SMALL = ("camera.width_px=160", "camera.height_px=120", "task.max_steps=3")
 
@@ -131,7 +132,7 @@ def test_a_shard_takes_the_key_that_another_one_has_written_since_it_opened_the_
 
 
 def test_weights_without_a_calibration_are_named(tmp_path: Path) -> None:
-    network = build_network(NETWORKS["compact"])
+    network = RedNet(NETWORKS["compact"])
     for name, header in (("raw", {}), ("fitted", {"temperature": 1.3})):
         save_network(tmp_path / f"{name}.safetensors", network, header)
     raw = RunOptions(weights=tmp_path / "raw.safetensors")
