@@ -494,7 +494,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _VIEWS.replace("shard 4", "shard 2"),
         f"stubborn evaluate --views {{tmp}}/views --weights {_SHIPPED} --against {_SHIPPED}",
     ),
-    f"{_RUN} --agent stubborn-plus --split runs/transfer --episodes 25": (
+    f"{_RUN} --agent stubborn-plus --split runs/transfer --episodes 100": (
         *_TRANSFER,
         f"{_RUN} --agent stubborn-plus --split {{tmp}}/transfer --episodes 1 --config task.max_steps=5"
         " --out {tmp}/run",
