@@ -6,7 +6,7 @@
 
 With a checkout of https://github.com/allenai/molmospaces and the package lxml on PYTHONPATH, its renderer takes part:
 
-    PYTHONPATH=molmospaces python -m pytest -p pytest_benchmark.plugin tools/benchmarks/test_speed.py -k images
+    PYTHONPATH=molmospaces python -m pytest -p pytest_benchmark.plugin tools/benchmarks/test_speed.py -k test_images
 
 `--benchmark-cprofile=cumtime` shows the stages of a step. To compare two commits, run each with `--benchmark-autosave`;
 `pytest-benchmark compare` then shows both. Other work on the machine changes the times, so run them in turns.
