@@ -75,8 +75,7 @@ class Confusions:
 
     def add(self, folder: str, house: str, matrix: Int64[np.ndarray, "classes classes"]) -> None:
         """Adds a matrix; see `confusion`."""
-        key = folder, house
-        self.matrices[key] = self.matrices[key] + matrix if key in self.matrices else matrix
+        self.matrices[folder, house] = matrix + self.matrices.get((folder, house), 0)
 
     def of(self, folder: str | None = None) -> Int64[np.ndarray, "classes classes"]:
         """Returns the sum of the matrices of one folder, or of all."""
@@ -90,7 +89,7 @@ class Confusions:
         """Returns the mIoU over the goal categories with its 95 % interval, such as `0.512 [0.470, 0.548]`.
 
         The interval holds the 2.5th to the 97.5th percentile of `DRAWS` sets of as many houses, drawn with replacement.
-        There is none for one house.
+        One house has no interval.
         """
         value, drawn = self._goals(folder)
         return f"{value:.3f}{_interval(drawn)}"
@@ -115,7 +114,7 @@ class Confusions:
         summed = dict[str, Int64[np.ndarray, "classes classes"]]()
         for (name, house), matrix in self.matrices.items():
             if folder in (None, name):
-                summed[house] = summed[house] + matrix if house in summed else matrix
+                summed[house] = matrix + summed.get(house, 0)
         return summed
 
 
