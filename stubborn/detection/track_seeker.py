@@ -3,34 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Bool, Float32, Float64, Int32
+from jaxtyping import Bool, Float32, Float64
 
 from sim.core.geometry.grid import Window, cells_near_segment
 from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, ConfigError, Observation
-from sim.core.wishes import Wish
 from stubborn.detection.approach import Approach, approach_from_here, approach_on, on_map
-from stubborn.detection.attributes import AT_LAST, Attributes
-from stubborn.detection.context import SHIPPED, read_context
-from stubborn.detection.fusion import fusion_for
+from stubborn.detection.goal_evidence import GoalEvidence
 from stubborn.detection.look import LookConfig, Verdicts, look_at
-from stubborn.detection.pictured import PictureEvidence
+from stubborn.detection.patience import Progress, SetAside
 from stubborn.detection.seeker import SeekerParts
-from stubborn.detection.tracks import TrackConfig, Tracks
+from stubborn.detection.tracks import TrackConfig
 from stubborn.detection.viewpoints import LastResort, ViewpointFinder
-from stubborn.mapping.collision_marks import STAYED_M, pushed_without_moving
 from stubborn.mapping.mapper import Sighting
 from stubborn.mapping.masks import nearest
 from stubborn.mapping.navmap import NavMap
-
-GOAL_TEXT, GOAL_PICTURE = "goal", "goal_picture"
-"""The sensors whose presence says that goals may be in words or pictures: what these ask for is then learned from the
-start."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,31 +96,34 @@ class TrackSeeker:
     def __init__(self, config: TrackSeekerConfig, parts: SeekerParts, finder: ViewpointFinder) -> None:
         self.config = config
         self.target = parts.target
-        self.camera = parts.camera
         self.robot = parts.robot
-        self.segmenter = parts.segmenter
-        self.fusion = fusion_for(parts.segmenter.spec, config.tracks.evidence.fusion)
-        has_context = parts.segmenter.spec.needs_verification and config.context_share > 0.0
-        self.context = read_context(config.context or SHIPPED) if has_context else None
+        self.exact = not parts.segmenter.spec.needs_verification
+        self.evidence = GoalEvidence(
+            config.tracks,
+            parts,
+            least=config.look.visit,
+            context=config.context,
+            context_share=config.context_share,
+        )
         self.finder = finder
         self.distances = parts.distances
         self.max_steps = parts.max_steps
-        self.wished = parts.wished
         self._last_resort_step = parts.target.last_resort_from(parts.max_steps)
         self.reset("")
 
     def reset(self, goal: str) -> None:
         """See `Seeker`."""
+        self.evidence.reset()
+        self.next_goal(goal)
+
+    def next_goal(self, goal: str) -> None:
+        """See `Seeker`: tracks and their attributes stay, and the decisions on them are those of another goal."""
+        self.evidence.next_goal()
+        look = self.config.look
         self.goal = goal
         self.step = 0
         self._nothing_new = False
-        self.tracks: Tracks | None = None
-        self.attributes: Attributes | None = None
-        """The names and attributes of the tracks; None: no goal was in words yet, or the first frame was not seen."""
-        self.pictured: PictureEvidence | None = None
-        """The colours of the tracks; None: no goal was a picture yet, or the first frame was not seen."""
-        exact = not self.segmenter.spec.needs_verification
-        self.verdicts = Verdicts(self.config.look, exact=exact, max_steps=self.max_steps)
+        self.verdicts = Verdicts(look, exact=self.exact, max_steps=self.max_steps)
         self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
         """Probability of the goal for each track, by its number; entry 0 belongs to no track."""
         self.pursued: int | None = None
@@ -138,131 +133,38 @@ class TrackSeeker:
         self.accepted_cell: tuple[int, int] | None = None
         """See `Seeker`."""
         self._judged = 0  # the track that `judge` accepted last
-        self._refused: set[int] = set()  # tracks that another judge took for something else
         self._drawn_rejected: set[int] = set()  # rejected tracks that the map shows
         self._accepted: list[int] = []  # accepted tracks that are not set aside
         self._targets: list[int] = []  # those that are approached
-        self._retry_step: dict[int, int] = {}
-        self._wait_steps: dict[int, int] = {}
+        self._aside = SetAside(self.target.retry_after_steps, self._last_resort_step)
+        self._progress = Progress(look.patience_m, look.patience_steps, self.config.most_pushes)
         self._look_steps: dict[int, int] = {}
-        # Places (x and y in metres) without progress, and the step until which doubtful tracks there wait.
-        self._left_spots: list[tuple[float, float, int]] = []
         self._went_nearer = False
         self._to_best = True  # whether the last approach led to the cells around the best ones
+        self._drove = False  # whether it led along a route
         self._pose = Pose(0.0, 0.0, 0.0)
         self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
-        # The pose at which the count of patience began, and the steps of pursuit since then.
-        self._pursuit: tuple[Pose, int] | None = None
         self._recalled = set[int]()  # tracks whose seen side is on the map of this goal
-        self._times_felt = 0  # collisions that had changed the map when the count of patience began
-        # The pose at the last approach, whether it led along a route, and the steps in which the robot did not move.
-        self._approached_from: Pose | None = None
-        self._drove = False
-        self._pushes = 0
-
-    def next_goal(self, goal: str) -> None:
-        """See `Seeker`: tracks and their attributes stay, and the decisions on them are those of another goal."""
-        tracks, attributes, pictured = self.tracks, self.attributes, self.pictured
-        self.reset(goal)
-        self.tracks, self.attributes, self.pictured = tracks, attributes, pictured
 
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """See `Seeker`."""
-        if self.tracks is None:
-            self.tracks = Tracks(
-                self.config.tracks, self.camera, self.robot.camera_forward_m, navmap.frame, self.fusion
-            )
-        wish = None if self.wished is None else self.wished.wish
-        if self.attributes is None and (wish is not None or GOAL_TEXT in observation):
-            self.attributes = Attributes(self.tracks.plan, self.tracks.config.most_tracks)
-        if self.pictured is None and GOAL_PICTURE in observation:
-            self.pictured = PictureEvidence(self.tracks.config.most_tracks)
-        posteriors, depth = self.segmenter.posteriors(observation), observation["depth"]
-        objects = None
-        learns = self.attributes is not None or self.pictured is not None
-        if learns and self.wished is not None and "rgb" in observation:  # a level camera
-            objects = self.wished.objects(observation, posteriors.shape[1:])
-        self.tracks.add(posteriors, depth, pose, self.goal, None if objects is None else objects[0])
+        self.evidence.add(observation, pose, self.goal, navmap.frame)
         self.step, self._pose = step, pose
-        if learns:
-            self._learn_attributes(posteriors, observation, objects, pose)
-        self.probability = self._probabilities(self.tracks, wish)
-        if self._refused:
-            self._refused = set(self.tracks.now()[list(self._refused)].tolist())
-            self.probability[list(self._refused)] = 0.0
+        self.probability = self.evidence.probabilities(self.goal, late=self._is_late)
         if navmap.sided:
-            self._recall_sides(navmap, self.tracks)
+            self._recall_sides(navmap)
         if self._decide(pose):
             navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
 
-    def _recall_sides(self, navmap: NavMap, tracks: Tracks) -> None:
+    def _recall_sides(self, navmap: NavMap) -> None:
         """Enters into the map from which side candidates were seen that are remembered from an earlier goal."""
+        tracks = self.evidence.of_episode()
         for track in np.flatnonzero(self.probability >= self.config.look.visit).tolist():
             if track not in self._recalled:
                 self._recalled.add(track)
                 (index, mask), (x, y) = tracks.footprint(track), tracks.evidence.side(track)
                 navmap.shown_x[index][mask] += np.float32(x)
                 navmap.shown_y[index][mask] += np.float32(y)
-
-    def _learn_attributes(
-        self,
-        posteriors: Float32[np.ndarray, "classes h w"],
-        observation: Observation,
-        objects: tuple[Int32[np.ndarray, "h w"], Sequence[str]] | None,
-        pose: Pose,
-    ) -> None:
-        """Enters a frame into the evidence on names, attributes and colours."""
-        rgb, columns = observation.get("rgb"), posteriors.shape[2]
-        if rgb is not None:
-            block = rgb.shape[1] // columns
-            rgb = rgb[block // 2 :: block, block // 2 :: block]
-        pixels = self._of_episode().pixels(observation["depth"], pose, columns)
-        if self.attributes is not None:
-            named = None
-            if objects is None and self.wished is not None and rgb is not None:
-                named = self.wished.named(observation, posteriors.shape[1:])
-            self.attributes.add(pixels, posteriors, rgb, objects, named)
-        if self.pictured is not None and rgb is not None:
-            self.pictured.add(pixels, rgb)
-
-    def _probabilities(self, tracks: Tracks, wish: Wish | None) -> Float32[np.ndarray, " numbers"]:
-        """Returns the probability of the goal for each track: of its categories, and of its name and conditions."""
-        least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
-        categories = (self.goal,) if wish is None else wish.categories
-        probability = np.sum(
-            [
-                tracks.probabilities(category, least_voxels, self.context, self.config.context_share)
-                for category in categories
-            ],
-            axis=0,
-        )
-        attributes, picture = self.attributes, None if self.wished is None else self.wished.picture
-        if picture is not None and self.pictured is not None:
-            candidates = np.flatnonzero(probability >= self.config.look.visit)
-            factors = self.pictured.factors(picture, tracks, candidates, self._is_late)
-            probability[candidates] = self._weighed(probability[candidates], factors)
-        if wish is None or attributes is None:
-            return probability
-        probability = np.minimum(probability, np.float32(1.0))
-        candidates = np.flatnonzero(probability >= self.config.look.visit)
-        probability[candidates] *= attributes.name_shares(tracks, candidates, wish.names)
-        candidates = candidates[probability[candidates] >= self.config.look.visit]
-        if candidates.size:
-            well_seen = np.array([bool(tracks.evidence.near_sectors(track).any()) for track in candidates.tolist()])
-            factors = attributes.factors(wish, tracks, candidates, self._is_late, well_seen)
-            probability[candidates] = self._weighed(probability[candidates], factors)
-        return probability
-
-    def _weighed(
-        self, probability: Float32[np.ndarray, " n"], factors: Float32[np.ndarray, " n"]
-    ) -> Float32[np.ndarray, " n"]:
-        """Returns probabilities times the factors of conditions; late, those of the best object count as `AT_LAST`.
-
-        The house has the goal, and no better object was found. If names are certain, so is then the whole probability.
-        """
-        if not self._is_late:
-            return probability * factors
-        return _raised(probability * factors) if self.verdicts.exact else probability * _raised(factors)
 
     @property
     def _is_late(self) -> bool:
@@ -274,18 +176,17 @@ class TrackSeeker:
         if not self._accepted or not sighting.is_within(self.distances.in_view_m):
             return None
         cells = self.cells_of(navmap, self._accepted)
-        if self._to_best and not self.verdicts.exact:
+        if self._to_best and not self.exact:
             cells &= self._near_best(navmap, self._accepted)
         return sighting.nearest(cells, self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         """See `Seeker`: accepted tracks come first, then doubtful ones; without progress another track is chosen."""
-        self._count_pushes(pose)
+        self._progress.count_pushes(pose, drove=self._drove)
         search = self._pursue(navmap, window, pose, step)
-        if navmap.times_felt != self._times_felt:  # a surface that is followed to its end takes its time
-            self._times_felt, self._pursuit = navmap.times_felt, None
-        if self._is_stuck(pose, pursuing=search is not None):
-            self._leave_spot()
+        if self._progress.is_stuck(pose, pursuing=search is not None, times_felt=navmap.times_felt):
+            if self.pursued is not None:
+                self._aside.add_spot(*self.evidence.of_episode().middle_xy_m(self.pursued), self.step)
             self.postpone(navmap, step)
             self.pursued = None
             search = self._pursue(navmap, window, pose, step)
@@ -297,7 +198,7 @@ class TrackSeeker:
     def _looks_too_long(self) -> bool:
         """Counts the steps of looks at the pursued track, and rejects it if there are too many."""
         track = self.pursued
-        if track is None or self.verdicts.exact:
+        if track is None or self.exact:
             return False
         self._look_steps[track] = self._look_steps.get(track, 0) + 1
         if self._look_steps[track] <= self.config.look.look_steps:
@@ -319,7 +220,7 @@ class TrackSeeker:
                 return search
             self._set_aside(self._targets)
         self._targets = []
-        doubtful = [t for t in self.verdicts.doubtful if self._is_due(t) and not self._is_at_left_spot(t)]
+        doubtful = [t for t in self.verdicts.doubtful if self._aside.is_due(t, self.step) and not self._is_near_spot(t)]
         while doubtful:
             track = self._best_doubtful(doubtful, pose)
             search = self._look(navmap, window, pose, track)
@@ -337,7 +238,7 @@ class TrackSeeker:
             # The cell may belong to a part that is not accepted itself: then the decision is on the approached tracks.
             near = at_cell or [t for t in self._targets if t in self._accepted] or self._accepted
             track = max(near, key=lambda t: self.probability[t])
-            least = self.verdicts.bar if self.verdicts.exact else self.verdicts.least
+            least = self.verdicts.bar if self.exact else self.verdicts.least
             if self.verdicts.rated[track] < least:  # it seemed more probable from afar
                 self.verdicts.give_up(track)
                 self._accepted.remove(track)
@@ -355,17 +256,18 @@ class TrackSeeker:
         """See `Seeker`: the track, and those that may be parts of it, count no longer in this episode."""
         if self.accepted_cell is None:
             return
-        for track in self._with_parts([self._judged]):
-            self._refused.add(track)
+        refused = self._with_parts([self._judged])
+        self.evidence.refuse(refused)
+        for track in refused:
             self.probability[track] = 0.0
             self.verdicts.give_up(track)
-        self._accepted = [track for track in self._accepted if track not in self._refused]
+        self._accepted = [track for track in self._accepted if track not in refused]
         self.confidence = self.accepted_cell = None
 
     def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
         """See `Seeker`: True at most once, if the candidate is not near enough and the path is free."""
         wanted_m = self.distances.nearer_viewpoint_m
-        if self._went_nearer or wanted_m is None or self._pushes_on():
+        if self._went_nearer or wanted_m is None or self._progress.pushes_on:
             return False
         x_m, y_m = navmap.frame.centres(*approach.cell)
         if pose.distance_to(Pose(float(x_m), float(y_m), 0.0)) <= wanted_m:
@@ -381,8 +283,7 @@ class TrackSeeker:
     def retry(self) -> None:
         """See `Seeker`. From now on, a goal with conditions takes the best object that is known."""
         self._nothing_new = True
-        self._retry_step.clear()
-        self._wait_steps.clear()
+        self._aside.end()
 
     def cells_of(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map that some tracks own and that look like the goal."""
@@ -397,7 +298,7 @@ class TrackSeeker:
 
         A track may contain a part of a neighbouring object, where the mean score is lower.
         """
-        index, mask = self._of_episode().footprint(track)
+        index, mask = self.evidence.of_episode().footprint(track)
         mean = navmap.score_sum[index] / np.maximum(navmap.frames_in_view[index], 1)
         return index, mask & (mean >= self.config.core_share * mean.max(where=mask, initial=0.0))
 
@@ -409,28 +310,14 @@ class TrackSeeker:
 
     def _decide(self, pose: Pose) -> bool:
         """Updates the verdicts on all tracks; returns True if the map does not show the current rejected tracks."""
-        tracks = self._of_episode()
+        tracks = self.evidence.of_episode()
         x_m, y_m = tracks.middles(np.arange(len(self.probability)))
         distance_m = np.hypot(x_m - pose.x_m, y_m - pose.y_m)
-        objects = None if self.verdicts.exact else tracks.objects(self.probability, self.config.part_gap_voxels)
+        objects = None if self.exact else tracks.objects(self.probability, self.config.part_gap_voxels)
         self.verdicts.update(self.probability, distance_m, tracks.evidence, self.step, self.pursued, objects)
-        self._accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
+        self._accepted = [t for t in sorted(self.verdicts.accepted) if self._aside.is_due(t, self.step)]
         drawn, self._drawn_rejected = self._drawn_rejected, set(self.verdicts.rejected)
         return drawn != self._drawn_rejected
-
-    def _is_stuck(self, pose: Pose, *, pursuing: bool) -> bool:
-        """Returns True if the robot has pursued tracks for many steps without progress, and then restarts the count.
-
-        Steps without pursuit neither count nor restart the count: otherwise a track that is visible at only one of two
-        headings would turn the robot back and forth.
-        """
-        look = self.config.look
-        if self._pursuit is None or pose.distance_to(self._pursuit[0]) > look.patience_m:
-            self._pursuit = pose, 0
-        begin, steps = self._pursuit
-        stuck = pursuing and steps >= look.patience_steps
-        self._pursuit = (pose, 0) if stuck else (begin, steps + pursuing)
-        return stuck
 
     def _best_accepted(self, pose: Pose) -> list[int]:
         """Returns the accepted tracks that are about as good as the best one; the nearest of them is approached."""
@@ -444,7 +331,7 @@ class TrackSeeker:
         result = set(tracks)
         for track in tracks:
             others = np.flatnonzero(self.probability >= self.config.part_share * self.probability[track])
-            result.update(self._of_episode().near(track, others, self.config.part_gap_voxels).tolist())
+            result.update(self.evidence.of_episode().near(track, others, self.config.part_gap_voxels).tolist())
         return sorted(result)
 
     def _best_doubtful(self, tracks: list[int], pose: Pose) -> int:
@@ -457,7 +344,7 @@ class TrackSeeker:
 
     def _worth(self, tracks: list[int], pose: Pose) -> Float64[np.ndarray, " tracks"]:
         """Returns the probability of tracks, less the cost of their distance."""
-        x_m, y_m = self._of_episode().middles(np.array(tracks))
+        x_m, y_m = self.evidence.of_episode().middles(np.array(tracks))
         cost = self.config.look.per_metre * np.hypot(x_m - pose.x_m, y_m - pose.y_m)
         return self.probability[tracks].astype(np.float64) - cost
 
@@ -466,7 +353,7 @@ class TrackSeeker:
     ) -> Approach | None:
         """Returns the approach to the accepted tracks, where possible to the cells around their best ones."""
         cells, approach = self.cells_of(navmap, tracks), None
-        if not self.verdicts.exact:
+        if not self.exact:
             near_best = cells & self._near_best(navmap, self._targets)
             approach = self._approach(navmap, window, pose, near_best, LastResort.NONE)
         self._to_best = approach is not None
@@ -498,24 +385,12 @@ class TrackSeeker:
 
         The planner treats the ground under the robot as free, so a viewpoint on it may be behind the obstacle.
         """
-        if not self._pushes_on():
+        if not self._progress.pushes_on:
             return None
         approach = approach_from_here(
             navmap.view(window), self.cells_of(navmap, tracks)[window.index], pose, self.finder
         )
         return None if approach is None else on_map(approach, window)
-
-    def _pushes_on(self) -> bool:
-        """Returns True if something stops the robot here."""
-        return self._pushes >= self.config.most_pushes
-
-    def _count_pushes(self, pose: Pose) -> None:
-        """Counts the steps in which the robot drove but did not move; a move restarts the count."""
-        before, self._approached_from = self._approached_from, pose
-        if before is None or pose.distance_to(before) >= STAYED_M:
-            self._pushes = 0
-        elif self._drove and pushed_without_moving(before, pose):
-            self._pushes += 1
 
     def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
         """Returns the approach to a place with a view of a track; None: the track was decided on or set aside.
@@ -523,7 +398,7 @@ class TrackSeeker:
         The robot looks at a probable track on the path to it first, and at others from a direction that is new.
         """
         look, likely = self.config.look, self.probability[track] >= self.config.look.straight
-        tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
+        tracks, cells = self.evidence.of_episode(), self.cells_of(navmap, [track])
         seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.middle_xy_m(track)
         looked_from = seen_from | self._hidden.get(track, False)
         away_m = math.hypot(middle_xy_m[0] - pose.x_m, middle_xy_m[1] - pose.y_m)
@@ -553,48 +428,22 @@ class TrackSeeker:
 
     def _note_hidden(self, track: int) -> None:
         """Remembers that something hides a track from here, if this look at it did not show it."""
-        tracks = self._of_episode()
+        tracks = self.evidence.of_episode()
         evidence, (x_m, y_m) = tracks.evidence, tracks.middle_xy_m(track)
         bearing_rad = math.atan2(self._pose.y_m - y_m, self._pose.x_m - x_m)
         sector = int(evidence.sector_of(np.array([bearing_rad]))[0])
         if not evidence.near_sectors(track)[sector]:
             self._hidden.setdefault(track, np.zeros(evidence.config.sectors, np.bool_))[sector] = True
 
-    def _leave_spot(self) -> None:
-        """Lets the doubtful tracks around the pursued one wait too: an object may reappear as another track."""
-        if self.pursued is not None:
-            place = self._of_episode().middle_xy_m(self.pursued)
-            self._left_spots.append((*place, self.step + self.target.retry_after_steps))
-
-    def _is_at_left_spot(self, track: int) -> bool:
-        x_m, y_m = self._of_episode().middle_xy_m(track)
-        return any(
-            self.step < until and math.hypot(x_m - spot_x_m, y_m - spot_y_m) <= self.config.look.patience_m
-            for spot_x_m, spot_y_m, until in self._left_spots
-        )
-
-    def _is_due(self, track: int) -> bool:
-        return self.step >= self._retry_step.get(track, 0)
+    def _is_near_spot(self, track: int) -> bool:
+        """Returns whether the robot made no progress in an earlier pursuit near this track, and the track waits."""
+        x_m, y_m = self.evidence.of_episode().middle_xy_m(track)
+        return self._aside.is_near_spot(x_m, y_m, self.config.look.patience_m, self.step)
 
     def _set_aside(self, tracks: list[int]) -> None:
-        """Tries these tracks again later, each time after twice as many steps, and when a last resort is allowed."""
-        for track in tracks:
-            wait = self._wait_steps.get(track, self.target.retry_after_steps)
-            again = self.step + wait
-            if self.step < self._last_resort_step:
-                again = min(again, self._last_resort_step)
-            self._retry_step[track], self._wait_steps[track] = again, 2 * wait
+        """Tries these tracks again later."""
+        self._aside.add(tracks, self.step)
         self._accepted = [t for t in self._accepted if t not in tracks]
 
     def _known(self, navmap: NavMap) -> Window:
         return navmap.known_window(margin_cells=self.target.margin_cells)
-
-    def _of_episode(self) -> Tracks:
-        assert self.tracks is not None, "observe comes first"
-        return self.tracks
-
-
-def _raised(values: Float32[np.ndarray, " n"]) -> Float32[np.ndarray, " n"]:
-    """Returns values in the same ratios, of which the largest is at least `AT_LAST` unless all are 0."""
-    best = float(values.max(initial=0.0))
-    return values * np.float32(AT_LAST / best) if 0.0 < best < AT_LAST else values

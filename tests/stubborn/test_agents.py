@@ -218,7 +218,7 @@ def test_stubborn_plus_goes_past_the_lookalike_too():
     )
     assert isinstance(agent, StubbornAgent)
     assert isinstance(agent.seeker, TrackSeeker)
-    agent.seeker.fusion = Fusion()  # the errors of this detector differ from those of the network
+    agent.seeker.evidence.fusion = Fusion()  # the errors of this detector differ from those of the network
     ground = GridWorld(TWO_ROOMS, (3.6, 0.6, 0.5), camera=SMALL_CAMERA)
     assert run_episode(ground, agent, "bed", max_steps=150).stopped
     assert ground.distance_to("bed") < 1.0

@@ -55,10 +55,10 @@ def test_tracks_and_the_explored_ground_outlast_a_goal_and_decisions_do_not() ->
     agent, _, _ = chain("stubborn-plus", "bed")
     seeker, seen = agent.seeker, agent.navmap.frames_in_view > 0
     assert isinstance(seeker, TrackSeeker)
-    tracks = seeker.tracks
+    tracks = seeker.evidence.tracks
     assert seeker.verdicts.accepted
     agent.next_goal("picture")
-    assert seeker.tracks is tracks
+    assert seeker.evidence.tracks is tracks
     assert not seeker.verdicts.accepted
     assert (agent.goal, agent.step, seeker.goal) == ("picture", 0, "picture")
     np.testing.assert_array_equal(agent.navmap.frames_in_view > 0, seen)

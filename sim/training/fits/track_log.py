@@ -148,7 +148,7 @@ class TrackRecorder:
             config=replace(PLUS, seeker=replace(SEEKER, look=LOOK_AT_ALL, context_share=0.0)),
         )
         assert isinstance(self._agent.seeker, TrackSeeker)
-        self._agent.seeker.fusion = Fusion()  # the log must not depend on fitted parameters or on context
+        self._agent.seeker.evidence.fusion = Fusion()  # the log must not depend on fitted parameters or on context
 
     def run(self, episode: Episode, seed: int) -> dict[str, np.ndarray] | None:
         """Runs an episode to its last step; returns its tracks as `samples_of` reads them, None if it failed."""
@@ -173,8 +173,7 @@ class TrackRecorder:
     def _tracks(self) -> Tracks:
         seeker = self._agent.seeker
         assert isinstance(seeker, TrackSeeker)
-        assert seeker.tracks is not None, "the agent has acted"
-        return seeker.tracks
+        return seeker.evidence.of_episode()
 
     def _count(self, depth: np.ndarray, counts: Int[np.ndarray, "tracks ids"]) -> None:
         """Adds the true ids of the pixels of the frame to those of their tracks."""

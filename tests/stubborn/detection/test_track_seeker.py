@@ -30,7 +30,9 @@ from stubborn.detection.approach import Approach
 from stubborn.detection.attributes import AT_LAST, Attributes
 from stubborn.detection.context import OBJECTS, read_context
 from stubborn.detection.fusion import Fusion
+from stubborn.detection.goal_evidence import GoalEvidence
 from stubborn.detection.look import LookConfig
+from stubborn.detection.patience import Progress
 from stubborn.detection.track_seeker import TrackSeeker, TrackSeekerConfig
 from stubborn.detection.tracks import TrackConfig, Tracks
 from stubborn.detection.viewpoints import LastResort
@@ -85,7 +87,10 @@ def agent_with(probability: float, look: LookConfig | None = None) -> tuple[Stub
     )
     assert isinstance(agent, StubbornAgent)
     assert isinstance(agent.seeker, TrackSeeker)
-    agent.seeker.fusion, agent.seeker.context = Fusion(), None  # not the fitted ones, whose parameters change
+    agent.seeker.evidence.fusion, agent.seeker.evidence.context = (
+        Fusion(),
+        None,
+    )  # not the fitted ones, whose parameters change
     return agent, agent.seeker
 
 
@@ -95,8 +100,9 @@ def test_a_doubtful_object_is_looked_at_from_two_sides_and_left():
     assert not trace.stopped
     assert seeker.verdicts.rejected
     assert not seeker.verdicts.accepted
-    assert seeker.tracks is not None
-    assert max(seeker.tracks.evidence.near_sectors(track).sum() for track in seeker.verdicts.rejected) >= 2
+    assert (
+        max(seeker.evidence.of_episode().evidence.near_sectors(track).sum() for track in seeker.verdicts.rejected) >= 2
+    )
 
 
 def test_near_the_end_the_best_rejected_object_is_tried():
@@ -193,7 +199,8 @@ def test_pursuit_that_begins_anew_in_every_second_step_ends_too(monkeypatch: pyt
 def test_around_a_place_where_pursuit_got_nowhere_doubtful_tracks_wait(monkeypatch: pytest.MonkeyPatch):
     agent, seeker, _, track = tracked()
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
-    seeker._accepted, seeker.verdicts.doubtful, seeker._pursuit = [], [track], None
+    seeker._accepted, seeker.verdicts.doubtful = [], [track]
+    seeker._progress = Progress(LookConfig.patience_m, LookConfig.patience_steps, 2)
     seeker.config = replace(seeker.config, look=replace(seeker.config.look, look_steps=200))
     monkeypatch.setattr(seeker, "_look", lambda *_: Approach(None, 0.0, (0, 0)))
     monkeypatch.setattr(seeker, "_set_aside", lambda tracks: None)  # it comes back as another track
@@ -209,7 +216,8 @@ def test_around_a_place_where_pursuit_got_nowhere_doubtful_tracks_wait(monkeypat
 def test_looks_at_a_track_end_after_a_number_of_steps(monkeypatch: pytest.MonkeyPatch):
     agent, seeker, _, track = tracked()
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
-    seeker._accepted, seeker.verdicts.doubtful, seeker._pursuit = [], [track], None
+    seeker._accepted, seeker.verdicts.doubtful = [], [track]
+    seeker._progress = Progress(LookConfig.patience_m, LookConfig.patience_steps, 2)
     monkeypatch.setattr(seeker, "_look", lambda *_: Approach(None, 0.0, (0, 0)))
     found = [seeker.approach(agent.navmap, window, Pose(2.0 * step, 0.0, 0.0), step) is not None for step in range(40)]
     assert found == [True] * seeker.config.look.look_steps + [False] * (40 - seeker.config.look.look_steps)
@@ -220,8 +228,7 @@ def tracked() -> tuple[StubbornAgent, TrackSeeker, Tracks, int]:
     """Returns an agent that has seen the table, its tracks, and the number of the most probable one."""
     agent, seeker = agent_with(0.97)
     run_episode(GridWorld(ROOM, START, camera=SMALL_CAMERA), agent, "bed", max_steps=30)
-    assert seeker.tracks is not None
-    return agent, seeker, seeker.tracks, int(np.argmax(seeker.probability))
+    return agent, seeker, seeker.evidence.of_episode(), int(np.argmax(seeker.probability))
 
 
 def test_a_track_above_the_bar_that_cannot_be_looked_at_counts_as_looked_at(monkeypatch: pytest.MonkeyPatch):
@@ -240,16 +247,6 @@ def test_a_track_above_the_bar_that_cannot_be_looked_at_counts_as_looked_at(monk
     assert seeker.verdicts.looks == {track: 1}
 
 
-def test_a_track_that_waits_is_tried_again_when_a_last_resort_is_allowed():
-    _, seeker, _, track = tracked()
-    seeker._retry_step.clear()
-    seeker._wait_steps[track] = 300
-    for step, due in ((200, 420), (430, 430 + 600)):
-        seeker.step = step
-        seeker._set_aside([track])
-        assert seeker._retry_step[track] == due
-
-
 @pytest.mark.parametrize(
     ("step", "nothing_new", "expected"),
     [(0, False, 0.24), (MAX_STEPS // 2, False, 0.24), (0, True, AT_LAST), (MAX_STEPS * 3 // 5, False, AT_LAST)],
@@ -258,14 +255,15 @@ def test_late_or_with_nothing_new_to_see_the_best_object_of_certain_names_passes
     monkeypatch: pytest.MonkeyPatch, step: int, nothing_new: bool, expected: float
 ):
     _, seeker, tracks, track = tracked()
-    seeker.attributes = Attributes(tracks.plan, tracks.config.most_tracks)
-    seeker.verdicts.exact, seeker.step = True, step
+    attributes = seeker.evidence.attributes = Attributes(tracks.plan, tracks.config.most_tracks)
+    seeker.evidence.exact, seeker.step = True, step
+    monkeypatch.setattr(GoalEvidence, "_wish", parse_wish("the red bed"))
     if nothing_new:
         seeker.retry()
-    monkeypatch.setattr(seeker.attributes, "name_shares", lambda _, of, names: np.full(len(of), 0.8 * (names == BED)))
-    monkeypatch.setattr(seeker.attributes, "factors", lambda wish, _, of, *rest: np.full(len(of), 0.3, np.float32))
+    monkeypatch.setattr(attributes, "name_shares", lambda _, of, names: np.full(len(of), 0.8 * (names == BED)))
+    monkeypatch.setattr(attributes, "factors", lambda wish, _, of, *rest: np.full(len(of), 0.3, np.float32))
     monkeypatch.setattr(tracks, "probabilities", lambda *_: np.eye(tracks.count + 1, dtype=np.float32)[track])
-    probability = seeker._probabilities(tracks, parse_wish("the red bed"))
+    probability = seeker.evidence.probabilities("bed", late=seeker._is_late)
     assert probability[track] == pytest.approx(expected)
     assert probability.sum() == pytest.approx(expected)
 
@@ -330,7 +328,7 @@ def test_a_look_does_not_lead_around_the_house(monkeypatch: pytest.MonkeyPatch):
     assert bearing_rad() == straight.bearing_rad
     lengths_m[2.0] = most_m + 0.1
     assert bearing_rad() is None
-    assert not seeker._is_due(track)  # it is tried again later
+    assert not seeker._aside.is_due(track, seeker.step)  # it is tried again later
 
 
 def test_a_look_ends_where_another_track_is_worth_it_far_more(monkeypatch: pytest.MonkeyPatch):
@@ -396,9 +394,9 @@ def test_context_counts_for_imperfect_detectors_and_with_a_share():
         assert isinstance(agent.seeker, TrackSeeker)
         return agent.seeker
 
-    assert seeker_of(Unsure(0.5)).context is not None
-    assert seeker_of(Unsure(0.5), context_share=0.0).context is None
-    assert seeker_of(GroundTruthSegmenter()).context is None
+    assert seeker_of(Unsure(0.5)).evidence.context is not None
+    assert seeker_of(Unsure(0.5), context_share=0.0).evidence.context is None
+    assert seeker_of(GroundTruthSegmenter()).evidence.context is None
     with pytest.raises(ConfigError, match="Context file"):
         seeker_of(Unsure(0.5), context=Path("nowhere.json"))
 
@@ -406,15 +404,14 @@ def test_context_counts_for_imperfect_detectors_and_with_a_share():
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_a_seeker_decides_by_the_probabilities_that_the_context_leaves(share: float):
     agent, seeker = agent_with(0.5)
-    seeker.config = replace(seeker.config, context_share=share)
-    seeker.context = read_context()
-    seeker.context.constant[OBJECTS.index("bed")] = -2.0
+    seeker.evidence.context_share = share
+    seeker.evidence.context = read_context()
+    seeker.evidence.context.constant[OBJECTS.index("bed")] = -2.0
     run_episode(GridWorld(ROOM, START, camera=SMALL_CAMERA), agent, "bed", max_steps=3)
-    assert seeker.tracks is not None
     least = seeker.config.tracks.least_voxels
-    expected = seeker.tracks.probabilities("bed", least, seeker.context, share)
+    expected = seeker.evidence.of_episode().probabilities("bed", least, seeker.evidence.context, share)
     np.testing.assert_array_equal(seeker.probability, expected)
-    plain = seeker.tracks.probabilities("bed", least)
+    plain = seeker.evidence.of_episode().probabilities("bed", least)
     assert plain.max() > 0.3
     assert (seeker.probability.max() < plain.max() - 0.1) == (share > 0.0)
 

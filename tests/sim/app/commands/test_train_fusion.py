@@ -32,7 +32,7 @@ def test_the_agent_of_the_log_uses_no_fitted_parameters(seats: Path, tmp_path: P
     runner = train_tracks.TrackRunner((args, tmp_path))
     seeker = runner._recorder._agent.seeker
     assert isinstance(seeker, TrackSeeker)
-    assert (seeker.fusion, seeker.context) == (Fusion(), None)
+    assert (seeker.evidence.fusion, seeker.evidence.context) == (Fusion(), None)
     runner.close()
 
 
