@@ -6,7 +6,7 @@
 | /yolov7 | image, conf_thres | the same, with COCO's phrases |
 | /mobile_sam | image, bbox (pixels, xyxy) | cropped_mask: base64 of a byte per pixel |
 | /blip2itm | image, txt | response, `itm score`: share of the picture that shows what the text names |
-| /posteriors | an NPZ file of `sim.app.services.remote.view_bytes` | an NPY file: float32 (40, h, w) |
+| /posteriors | an NPZ file of `sim.app.services.forms.view_bytes` | an NPY file: float32 (40, h, w) |
 | /frame | an NPZ file of `sim.app.services.frames.Frame` | nothing |
 
 Requests and replies are JSON, an image is base64 of a JPEG or PNG. A refused request is answered with status 400, a
@@ -39,8 +39,8 @@ from sim.app.services.detectors import (
     phrases_of,
     share_of,
 )
+from sim.app.services.forms import posteriors_bytes, read_view
 from sim.app.services.frames import MAX_FRAMES, Frame, Shelf, UnknownPictureError
-from sim.app.services.remote import posteriors_bytes, read_view
 from sim.app.services.words import COCO
 from sim.core.errors import ConfigError
 from sim.core.interface import MAX_SIDE_PX

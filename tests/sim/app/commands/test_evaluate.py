@@ -18,7 +18,7 @@ from sim.app import cli
 from sim.app.commands.evaluate import own
 from sim.app.commands.evaluate import segmentation as evaluate_rednet
 from sim.app.commands.evaluate.segmentation import Args
-from sim.app.services.remote import posteriors_bytes, read_view
+from sim.app.services.forms import posteriors_bytes, read_view
 from sim.core.interface import MPCAT40_ID, ConfigError
 from sim.training.segmentation.evaluation import Iou
 from stubborn.segmentation.calibration import Calibration

@@ -25,8 +25,8 @@ from sim.app.services.detectors import (
     share_of,
     true_segments,
 )
+from sim.app.services.forms import read_posteriors, view_bytes
 from sim.app.services.frames import Frame, Shelf, UnknownPictureError
-from sim.app.services.remote import read_posteriors, view_bytes
 from sim.app.services.server import Answers, make_app
 from sim.app.services.words import categories_in, category_of
 from sim.core.errors import ConfigError

@@ -17,7 +17,8 @@ import torch
 from sim.app.composition.segmenters import find_segmentation
 from sim.app.options import RunOptions
 from sim.app.services.client import is_address
-from sim.app.services.remote import HttpConfig, HttpSegmenter, posteriors_bytes, read_posteriors, read_view, view_bytes
+from sim.app.services.forms import posteriors_bytes, read_posteriors, read_view, view_bytes
+from sim.app.services.remote import HttpConfig, HttpSegmenter
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import MPCAT40_ID, CameraModel
 from sim.core.vocabulary import vocabulary
