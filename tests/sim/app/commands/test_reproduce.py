@@ -45,18 +45,39 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture
-def args(split: Path, tmp_path: Path) -> reproduce.Args:
+def args_for(split: Path, out: Path) -> reproduce.Args:
+    """Returns the arguments of a table of two agents in two episodes."""
     return reproduce.Args(
         table="categories",
         split=str(split),
         episodes=2,
         agents=AGENTS,
         semantics="gt",
-        out=tmp_path,
+        out=out,
         chunk=1,
         step_timeout=0.0,  # the user's agent runs in this process, which is quicker
     )
+
+
+@pytest.fixture
+def args(split: Path, tmp_path: Path) -> reproduce.Args:
+    """Arguments with an empty folder."""
+    return args_for(split, tmp_path)
+
+
+@pytest.fixture(scope="module")
+def finished(split: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a finished table."""
+    out = tmp_path_factory.mktemp("finished")
+    assert reproduce.main(args_for(split, out)) == 0
+    return out
+
+
+@pytest.fixture
+def ran(finished: Path, split: Path, tmp_path: Path) -> reproduce.Args:
+    """Arguments with a copy of the folder of a finished table."""
+    shutil.copytree(finished, tmp_path / "ran")
+    return args_for(split, tmp_path / "ran")
 
 
 def stem(args: reproduce.Args) -> str:
@@ -84,24 +105,21 @@ def test_the_agents_of_a_table_run_once_and_the_table_is_written(
 
 
 def test_another_table_reuses_existing_episodes_and_runs_the_rest(
-    args: reproduce.Args, capsys: pytest.CaptureFixture[str]
+    ran: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    reproduce.main(args)
-    capsys.readouterr()
-    assert reproduce.main(replace(args, table="overall", episodes=3)) == 0
+    assert reproduce.main(replace(ran, table="overall", episodes=3)) == 0
     assert capsys.readouterr().out.count("] e2:") == 2
-    assert list(read_run(args.out / ORACLE).results) == ["e0", "e1", "e2"]
-    assert json.loads((args.out / ORACLE / "config.json").read_text())["episodes"] == 3
+    assert list(read_run(ran.out / ORACLE).results) == ["e0", "e1", "e2"]
+    assert json.loads((ran.out / ORACLE / "config.json").read_text())["episodes"] == 3
 
 
-def test_a_run_of_sim_run_and_a_run_for_a_table_have_the_same_lines(args: reproduce.Args, split: Path) -> None:
-    reproduce.main(args)
-    alone = args.out / "alone"
+def test_a_run_of_sim_run_and_a_run_for_a_table_have_the_same_lines(ran: reproduce.Args, split: Path) -> None:
+    alone = ran.out / "alone"
     options = ["--agent", AGENTS[1], "--semantics", "gt", "--split", str(split), "--episodes", "2", "--out", str(alone)]
-    options += ["--step-timeout", "0", "--seed-key", read_run(args.out / MINE).recorded("seed_key")]
+    options += ["--step-timeout", "0", "--seed-key", read_run(ran.out / MINE).recorded("seed_key")]
     assert run.entry(options) == 0
     first, second = (
-        [result.without_times() for result in read_run(folder).results.values()] for folder in (args.out / MINE, alone)
+        [result.without_times() for result in read_run(folder).results.values()] for folder in (ran.out / MINE, alone)
     )
     assert first == second
 
@@ -141,22 +159,21 @@ def test_causes_come_from_the_trajectories_and_not_from_old_lines(args: reproduc
         ("split_identity", {"name": "tiny", "version": "1", "sha256": "0"}, r"of .* on tiny 1 \(0\)"),
     ],
 )
-def test_a_run_with_other_options_gets_into_no_table(args: reproduce.Args, key: str, value: object, text: str) -> None:
-    reproduce.main(replace(args, episodes=1))
-    file = args.out / MINE / "config.json"
+def test_a_run_with_other_options_gets_into_no_table(ran: reproduce.Args, key: str, value: object, text: str) -> None:
+    reproduce.main(replace(ran, episodes=1))
+    file = ran.out / MINE / "config.json"
     file.write_text(json.dumps(json.loads(file.read_text()) | {key: value}))
-    before = (args.out / "tables" / f"{stem(args)}.md").read_bytes()
+    before = (ran.out / "tables" / f"{stem(ran)}.md").read_bytes()
     with pytest.raises(ConfigError, match=rf"{MINE}' holds a run {text}"):
-        reproduce.main(replace(args, episodes=1, minutes=0.0))
-    assert (args.out / "tables" / f"{stem(args)}.md").read_bytes() == before
+        reproduce.main(replace(ran, episodes=1, minutes=0.0))
+    assert (ran.out / "tables" / f"{stem(ran)}.md").read_bytes() == before
 
 
 @pytest.mark.parametrize(("settings", "refused"), [({}, True), ({"detector.weights": "mine"}, False)])
 def test_two_versions_of_the_shipped_network_get_into_no_table(
-    args: reproduce.Args, settings: dict[str, str], refused: bool
+    ran: reproduce.Args, settings: dict[str, str], refused: bool
 ) -> None:
-    reproduce.main(args)
-    runs = [read_run(args.out / name) for name in (ORACLE, MINE)]
+    runs = [read_run(ran.out / name) for name in (ORACLE, MINE)]
     runs = [
         replace(run, config={**run.config, "files_sha256": {"weights": checksum}, "settings": settings})
         for run, checksum in zip(runs, ("a", "b"), strict=True)
@@ -170,19 +187,18 @@ def test_two_versions_of_the_shipped_network_get_into_no_table(
 
 
 def test_tables_are_made_again_from_the_folders_without_running_anything(
-    args: reproduce.Args, monkeypatch: pytest.MonkeyPatch
+    ran: reproduce.Args, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    reproduce.main(args)
-    page = args.out / "tables" / f"{stem(args)}.md"
+    page = ran.out / "tables" / f"{stem(ran)}.md"
     before = page.read_bytes()
     for folder in (MINE, ORACLE):  # as older code wrote it
-        file = args.out / folder / "config.json"
+        file = ran.out / folder / "config.json"
         config = json.loads(file.read_text())
         kept = ("agent", "semantics", "seed", "noise", "episodes", "split_identity", "versions")
         file.write_text(json.dumps({key: config[key] for key in kept}))
     page.unlink()
     monkeypatch.setattr(table_runs, "run_missing", lambda *_: pytest.fail("an episode was run"))
-    assert reproduce.main(replace(args, minutes=0.0)) == 0
+    assert reproduce.main(replace(ran, minutes=0.0)) == 0
     assert page.read_bytes() == before
 
 
@@ -211,10 +227,9 @@ def test_many_options_get_a_checksum_in_the_name_of_the_folder(
     assert list(args.out.glob("examples.my_agent_AGENT_gt_none_tiny_options-????????/results.jsonl"))
 
 
-def test_the_notes_agree_with_the_runs(args: reproduce.Args) -> None:
-    reproduce.main(args)
-    setup, other = AgentSetup.named("oracle", "gt"), replace(args, seed=7, noise="harsh")
-    note = reproduce.notes_of(other, "overall", {setup: read_run(args.out / ORACLE)}, ["e0"])[0]
+def test_the_notes_agree_with_the_runs(ran: reproduce.Args) -> None:
+    setup, other = AgentSetup.named("oracle", "gt"), replace(ran, seed=7, noise="harsh")
+    note = reproduce.notes_of(other, "overall", {setup: read_run(ran.out / ORACLE)}, ["e0"])[0]
     assert "sensor noise none, seed 0," in note
 
 
@@ -259,18 +274,14 @@ def test_options_that_cannot_run_are_refused_before_the_first_episode(
     assert not list(args.out.iterdir())
 
 
-def test_two_folders_of_runs_are_compared_pair_by_pair(
-    args: reproduce.Args, capsys: pytest.CaptureFixture[str]
-) -> None:
-    reproduce.main(args)
-    capsys.readouterr()
-    folders = compare_runs.Args(first=args.out / MINE, second=args.out / ORACLE, out=args.out / "compared")
+def test_two_folders_of_runs_are_compared_pair_by_pair(ran: reproduce.Args, capsys: pytest.CaptureFixture[str]) -> None:
+    folders = compare_runs.Args(first=ran.out / MINE, second=ran.out / ORACLE, out=ran.out / "compared")
     assert compare_runs.main(folders) == 0
     output = capsys.readouterr().out
     assert "B - A, paired over 2 episodes" in output
     assert "Fields in which the runs differ" in output
     assert output.strip().splitlines()[-1].startswith("Verdict over 2 episodes.")
-    page = (args.out / "compared" / "comparison.md").read_text()
+    page = (ran.out / "compared" / "comparison.md").read_text()
     assert "| success % |" in page
     assert f'| agent | "{AGENTS[1]}" | "oracle" |' in page
 
@@ -342,15 +353,15 @@ def test_all_tables_of_the_paper_get_a_page(
 
 
 def test_the_paper_is_beside_its_own_agents_only(
-    args: reproduce.Args, monkeypatch: pytest.MonkeyPatch, lines: list[EpisodeResult]
+    ran: reproduce.Args, monkeypatch: pytest.MonkeyPatch, lines: list[EpisodeResult]
 ) -> None:
     monkeypatch.setitem(TABLES, "categories", replace(TABLES["categories"], agents=AGENTS[:1]))
-    reproduce.main(replace(args, agents=()))
-    page = (args.out / "tables" / "categories_gt_tiny.md").read_text()
+    reproduce.main(replace(ran, agents=()))
+    page = (ran.out / "tables" / "categories_gt_tiny.md").read_text()
     assert "| goal (episodes) | oracle | paper: Stubborn | paper: Single-Frame |" in page
     assert re.search(r"\| bed \(1\) \| [^|]* \| 51 \| 44 \|", page)
-    reproduce.main(args)
-    assert "paper" not in (args.out / "tables" / f"{stem(args)}.md").read_text()
+    reproduce.main(ran)
+    assert "paper" not in (ran.out / "tables" / f"{stem(ran)}.md").read_text()
 
 
 def test_an_agent_of_a_table_can_have_a_segmentation_of_its_own() -> None:
