@@ -23,6 +23,7 @@ def test_a_context_starts_without_a_display_after_the_user_imported_mujoco() -> 
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", ["foo", "disable", "cgl"])
 def test_a_backend_that_cannot_render_is_refused_only_when_something_is_rendered(name: str) -> None:
     assert _run("import sim.gl", MUJOCO_GL=name).returncode == 0

@@ -66,6 +66,7 @@ def test_an_invalid_configuration_is_refused_with_the_allowed_values(options: di
         gymnasium.make(ENV_ID, **options)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("vectorization_mode", ["sync", "async"])
 def test_a_vector_of_two_equals_two_single_environments(options: dict[str, Any], vectorization_mode: str) -> None:
     seeds, actions = (3, 4), [(1, 2), (1, 1), (3, 1), (0, 1)]
@@ -100,6 +101,7 @@ def test_the_id_without_module_makes_async_vectors_with_gymnasiums_own_context(h
     assert answer.stdout.strip() == "(2, 480, 640) [0.0, 0.0]", answer.stderr
 
 
+@pytest.mark.costly
 def test_a_forked_worker_of_a_process_that_rendered_raises_and_does_not_hang(house: Path) -> None:
     code = (
         "import gymnasium, sim.gym\n"
@@ -115,6 +117,7 @@ def test_a_forked_worker_of_a_process_that_rendered_raises_and_does_not_hang(hou
     assert "RenderError: OpenGL does not survive a fork" in answer.stderr
 
 
+@pytest.mark.costly
 def test_an_environment_that_a_fork_inherited_raises_and_does_not_hang(house: Path) -> None:
     code = (
         "import os, gymnasium, sim.gym\n"
@@ -178,6 +181,7 @@ def test_the_example_runs_both_agents_in_one_episode() -> None:
     assert [end["num_steps"] for end in ends] == [end["episode"]["l"] for end in ends] == [4, 4]
 
 
+@pytest.mark.costly
 def test_the_example_of_ppo_trains_and_tries_its_policy(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -53,6 +53,7 @@ def run(
     return run_episode(world, agent, goal, max_steps=max_steps), agent
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("goal", ["bed", "picture", "cushion", "cabinet", "table"])
 def test_it_finds_each_kind_of_object_and_stops_within_a_metre(goal: str):
     start = (10.0, 3.7, 1.9) if goal == "cabinet" else (1.2, 0.7, 1.9)
@@ -81,6 +82,7 @@ def test_it_does_not_stop_in_front_of_the_wall_that_hides_the_target():
     assert x > 8 * 0.3 or y < 4 * 0.3  # past the wall, or in its doorway
 
 
+@pytest.mark.costly
 def test_glass_is_hit_marked_and_passed():
     plan = """
 ####################

@@ -85,6 +85,7 @@ every_agent = pytest.mark.parametrize("name", AGENTS)
 some_agents = pytest.mark.parametrize("name", sample(AGENTS, 6))
 
 
+@pytest.mark.costly
 @some_agents
 def test_actions_are_valid_and_the_same_seed_gives_the_same_episode(name: str):
     first, second = (run_episode(world(), build(name), "plant", seed=7, max_steps=STEPS) for _ in range(2))
@@ -92,6 +93,7 @@ def test_actions_are_valid_and_the_same_seed_gives_the_same_episode(name: str):
     assert first.actions == second.actions
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", sample(AGENTS, 4))
 def test_two_episodes_in_a_row_are_those_of_two_fresh_agents(name: str):
     one, runs = build(name), (("cushion", 3), ("bed", 5))
@@ -224,12 +226,14 @@ def test_stubborn_plus_goes_past_the_lookalike_too():
     assert ground.distance_to("bed") < 1.0
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", ["stubborn", "stubborn-plus", "single-frame", "latest-frame", "frontier-avoid"])
 def test_with_an_unsure_detector_the_same_seed_still_gives_the_same_episode(name: str):
     runs = [run_episode(world(), unsure(name), "bed", seed=2, max_steps=60).actions for _ in range(2)]
     assert runs[0] == runs[1]
 
 
+@pytest.mark.costly
 def test_the_agent_never_stops_without_a_target():
     trace = run_episode(world(), build("stubborn"), "sofa", max_steps=150)
     assert not trace.stopped

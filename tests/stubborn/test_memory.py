@@ -41,6 +41,7 @@ def chain(name: str, *goals: str, **options: Any) -> tuple[StubbornAgent, list[i
     return agent, steps, distances_m
 
 
+@pytest.mark.costly
 def test_the_second_visit_is_direct_with_memory_and_a_search_without() -> None:
     goals = ("bed", "picture", "bed")
     _, with_memory, ends = chain("stubborn-plus", *goals)
@@ -73,6 +74,7 @@ def test_an_agent_without_memory_begins_with_nothing() -> None:
     assert agent.goal == "picture"
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", ["stubborn", "stubborn-iv"])
 def test_other_agents_keep_the_map_and_find_the_next_goal(name: str) -> None:
     agent, _, ends = chain(name, "bed", "cabinet")

@@ -19,6 +19,7 @@ TOOLS = {
 }
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", sample(sorted(TOOLS), 3))
 def test_a_tool_starts_as_a_module(name: str) -> None:
     ended = subprocess.run(

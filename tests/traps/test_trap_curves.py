@@ -84,6 +84,7 @@ def test_the_figures_have_an_axis_for_each_quantity_and_the_csv_a_line_for_each_
     assert len(as_csv(points).splitlines()) == 1 + len(points)
 
 
+@pytest.mark.costly
 def test_the_report_of_a_split_of_families_has_curves_and_tables(tmp_path: Path):
     args = Args(
         out=tmp_path, split="contact-val", agents=("tests.helpers.runners:make_quitter",),

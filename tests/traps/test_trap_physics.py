@@ -97,6 +97,7 @@ def test_a_report_has_results_of_one_split_and_physics_and_of_the_wanted_episode
         main(args)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("trap", "heading"), sample(CASES, 3))
 def test_the_oracle_escapes_from_every_trap_without_contact(truth_env, trap, heading):
     episode = truth_env.split.episode(f"{trap}_{heading}")
@@ -131,6 +132,7 @@ def test_the_full_agent_escapes_where_the_one_without_collision_avoidance_does_n
     assert np.mean(bare.forwards_m) < 0.5 * np.mean(full.forwards_m)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("trap", "heading"), sample([case for case in CASES if case[0] != "slippery_floor"], 1))
 def test_each_mark_has_a_contact_within_reach(short_env, trap, heading):
     trial, agent = run_in_trap(short_env, trap, heading, "stubborn-v")

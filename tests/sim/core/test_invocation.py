@@ -88,6 +88,7 @@ def test_the_command_that_runs_has_the_name_that_was_typed(project: Path, monkey
         assert invocation.program() == ".venv/bin/python -m sim.app.commands.main views"
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("words", ["-m sim.web", "-m sim.report", "-m sim.app.commands.main evaluate mistakes"])
 def test_help_names_the_command_that_was_given(words: str) -> None:
     done = subprocess.run(

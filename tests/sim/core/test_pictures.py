@@ -55,6 +55,7 @@ def test_pillow_opens_only_these_formats_and_sizes_while_it_is_limited(monkeypat
     assert losses.total() == 2
 
 
+@pytest.mark.costly
 def test_pictures_are_decoded_in_one_place() -> None:
     found = {
         str(file.relative_to(ROOT))

@@ -254,6 +254,7 @@ BAD_ARRAYS = (
 )  # fmt: skip
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(
     "reader", [reader for reader in READERS if reader.name.endswith(".npz")], ids=lambda reader: reader.name
 )

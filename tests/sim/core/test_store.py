@@ -127,6 +127,7 @@ def test_nothing_is_kept_with_a_size_of_zero_or_without_a_key(folder: Path, monk
         kept(key_of("a"), Result, made)
 
 
+@pytest.mark.costly
 def test_two_writers_and_readers_never_see_half_a_file(folder: Path) -> None:
     with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
         counts = list(pool.map(_write_and_read, (0, 1)))

@@ -217,6 +217,7 @@ def test_a_sofa_taken_for_seating_has_a_high_other_score_and_seating_taken_for_a
     assert all(seating < 0.5 < sofa for sofa, seating in right.values())
 
 
+@pytest.mark.costly
 def test_a_run_with_noisy_semantics_is_reproducible_and_records_its_settings(house: Path, tmp_path: Path):
     lines = []
     for name in ("once", "twice"):

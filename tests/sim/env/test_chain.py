@@ -61,6 +61,7 @@ class Remembering(Noted):
         self._oracle.next_goal(goal)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("agent", "call"), [(Noted, "reset"), (Remembering, "next")])
 def test_an_agent_gets_each_goal_and_the_oracle_reaches_all(env: ObjectNavEnv, agent: type[Noted], call: str) -> None:
     driver = agent(env)
@@ -92,6 +93,7 @@ def test_a_step_that_ends_a_goal_is_rewarded_and_reports_it(env: ObjectNavEnv) -
     assert info["chain"]["success"] == pytest.approx(2 / 3)
 
 
+@pytest.mark.costly
 @pytest.mark.filterwarnings("error")
 def test_gymnasiums_checker_accepts_the_environment_of_chains(tmp_path: Path) -> None:
     options = {"houses": ["val_00"], "camera": SMALL, "render_mode": "rgb_array"}

@@ -84,6 +84,7 @@ print(resident_mb() - before_mb)
 """
 
 
+@pytest.mark.costly
 def test_maps_take_no_memory_for_unseen_parts() -> None:
     """Runs in a process of its own: memory that other tests have freed would hide or add pages."""
     ended = subprocess.run([sys.executable, "-c", MAPS], capture_output=True, text=True, check=True, cwd=ROOT)
@@ -109,6 +110,7 @@ print(resident_mb() - before_mb)
 """
 
 
+@pytest.mark.costly
 def test_freed_layers_are_returned_though_small_blocks_between_them_live_on() -> None:
     """Runs in a process of its own, because the switch is for a whole process."""
     ended = subprocess.run([sys.executable, "-c", LAYERS], capture_output=True, text=True, check=True, cwd=ROOT)
@@ -145,6 +147,7 @@ def test_memory_freed_in_pieces_is_returned_before_the_next_episode() -> None:
     assert float(ended.stdout) > 50, ended.stdout  # 150 are freed, some are used again
 
 
+@pytest.mark.costly
 def test_a_worker_imports_no_library_that_it_does_not_need() -> None:
     options = ("semantics='gt'", "semantics='noisy'", "agent='random'", "agent='oracle'")
     code = "from sim.app.options import RunOptions; from sim.app.composition.runner import EpisodeRunner\n"

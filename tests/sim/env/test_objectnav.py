@@ -75,6 +75,7 @@ def test_a_goal_in_words_is_observed_as_text_and_one_by_a_picture_as_pixels(hous
         env.close()
 
 
+@pytest.mark.costly
 def test_make_needs_no_import_of_ours(house: Path) -> None:
     code = (
         "import gymnasium; env = gymnasium.make('sim.gym:stubborn/ObjectNav-v0', house=r'%s', sensors=('depth',));"

@@ -47,6 +47,7 @@ def maze():
     return with_box(house, "bed_00", centre_m=(3.3, 1.5, 0.25), half_m=(0.5, 0.8, 0.25))
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("yaw", [0.0, 1.0, 2.5, -2.0])
 def test_the_oracle_finds_its_path_through_a_maze_from_any_heading(yaw):
     result = run_oracle(maze(), "bed", Pose(-3.0, -2.0, yaw))

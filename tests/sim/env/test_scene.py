@@ -31,6 +31,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "cache" / "prepared"
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("split", ["val", "hazards", "large"])
 def test_a_prepared_house_gives_the_same_episode_to_the_bit(
     split: str, cache: Path, monkeypatch: pytest.MonkeyPatch

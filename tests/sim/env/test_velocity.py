@@ -112,6 +112,7 @@ def test_a_collision_is_counted_once_when_a_contact_begins_to_block(tmp_path: Pa
     env.close()
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("seed", "steps"), [(1, 60), (2, 90)])
 def test_a_robot_that_swings_at_furniture_with_slipping_wheels_has_one_collision(seed: int, steps: int) -> None:
     env = ObjectNavVelocityEnv(split="val", sensors=(), time_limit_s=30.0)

@@ -63,6 +63,7 @@ def require_rules(task: Task, chain: tuple[GoalSpec, ...], floor_z_m: float = 0.
             assert LEAST_APART_M <= lengths_m.min() <= lengths_m.max() < np.inf
 
 
+@pytest.mark.costly
 def test_the_shipped_chains_mean_what_they_meant_when_they_were_made() -> None:
     split = load_split("chains-val")
     assert len(split.episodes) >= 100

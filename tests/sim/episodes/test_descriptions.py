@@ -97,6 +97,7 @@ def test_an_object_with_its_edge_on_the_rug_is_not_said_to_be_on_it():
     assert not any("rug" in one.text for one in written(with_facts(house, floor_01="name: rug"))[1])
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(
     ("home", "house", "names"),
     [

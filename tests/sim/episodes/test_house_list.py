@@ -159,6 +159,7 @@ def test_the_cache_folder_follows_the_variable_then_xdg(monkeypatch: pytest.Monk
     assert cache_dir() == Path.home() / ".cache" / "stubborn-objectnav"
 
 
+@pytest.mark.costly
 def test_a_generated_house_loads_its_textures_from_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
     split = listed_split(tmp_path / "tiny", STUDIO.house_bytes())

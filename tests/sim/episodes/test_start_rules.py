@@ -36,6 +36,7 @@ def task() -> Task:
     return Task(World(divided()))
 
 
+@pytest.mark.costly
 def test_hidden_goals_are_far_away_and_visible_in_no_direction(task):
     asks = find_house_asks(task, HIDDEN).asks
     assert asks == (Ask("bed"),)  # no place is 12 m away from both chairs

@@ -93,6 +93,7 @@ def test_the_camera_shows_labels_and_unlabelled_geoms_as_void(scene: tuple[Path,
     assert observation["rgb"].std() > 5.0
 
 
+@pytest.mark.costly
 def test_the_oracle_succeeds_and_the_run_reports_removed_elements(
     scene: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -134,6 +134,7 @@ def test_movable_objects_overlap_others_by_less_than_a_centimetre(case: Case) ->
     assert (at_rest.contact.dist[between_objects] > -0.01).all()
 
 
+@pytest.mark.costly
 def test_the_free_space_is_connected_and_reaches_every_room(case: Case) -> None:
     for floor_m in case.floors_m:
         space = case.scene.task.truth.space(floor_m)
@@ -146,6 +147,7 @@ def test_the_free_space_is_connected_and_reaches_every_room(case: Case) -> None:
                 assert inside * 7 * space.frame.cell_m**2 > 0.1, room.name
 
 
+@pytest.mark.costly
 def test_every_goal_instance_can_be_reached_from_its_view_points(case: Case) -> None:
     assert {episode.goal for episode in case.episodes} <= set(case.goals)
     for goal in sample(sorted(case.goals), GOALS):
@@ -162,6 +164,7 @@ def test_every_goal_instance_can_be_reached_from_its_view_points(case: Case) -> 
             assert region.reaches(footprints[entry["object_name"]], space.frame.to_metres(cells)).all()
 
 
+@pytest.mark.costly
 def test_the_distance_from_start_to_goal_is_the_recorded_one_and_within_the_limits(case: Case) -> None:
     for episode in sample(case.episodes, EPISODES):
         distance_m = case.scene.task.distance_from(episode.goal, episode.start)

@@ -216,6 +216,7 @@ def test_from_inside_a_wall_and_directly_in_front_of_one_everything_is_rendered(
     assert "chair_00" not in rendered(house, eye=(1.40, 0, 0.88))
 
 
+@pytest.mark.costly
 def test_in_a_room_of_many_boxes_a_frame_differs_in_no_pixel() -> None:
     """Walls, half walls, beams and pillars with random poses, many of them very near to the camera."""
     rng = np.random.default_rng(5)

@@ -49,6 +49,7 @@ def test_a_profile_covers_its_distance_within_its_limits(distance, speed, accele
     assert slope == pytest.approx(profile.speed(time_s), abs=2 * acceleration * step_s + 1e-6)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("base", BASES)
 def test_500_free_actions_are_exact_and_do_not_drift(base):
     start = Pose(0.0, 0.0, 0.3)

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -108,6 +109,7 @@ def _poses(model: mujoco.MjModel, names: list[str], base: str | None = None) -> 
     )
 
 
+@pytest.mark.costly
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(house=houses(), robot=robots())
 def test_every_geom_stands_where_mujoco_alone_puts_it(tmp_path: Path, house: str, robot: str) -> None:

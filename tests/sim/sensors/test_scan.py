@@ -129,6 +129,7 @@ def test_gymnasium_makes_it_by_name(house: Path) -> None:
     env.close()
 
 
+@pytest.mark.costly
 def test_an_agent_may_declare_it_without_ground_truth_and_the_run_records_it(house: Path, tmp_path: Path) -> None:
     assert not reads_truth("scan")
     assert not reads_truth(ScanSensor())

@@ -53,6 +53,7 @@ def test_the_first_frame_shows_the_floor_of_the_view_within_the_depth_range(tmp_
     assert ahead["area_per_metre"] == 0.0
 
 
+@pytest.mark.costly
 def test_floor_that_was_seen_before_does_not_count_again_and_new_floor_does(tmp_path):
     start = Pose(-6.0, 0.0, 0.0)
     once = info_after(tmp_path, far_room(), "bed", start)

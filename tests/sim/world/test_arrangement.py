@@ -344,6 +344,7 @@ def test_the_floor_of_a_kitchen_is_hard_and_not_that_of_the_living_room() -> Non
         assert floors(kind, "carpet_loop") == [f"room_{kind}_00 has carpet on its whole floor"]
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("seed", [4, 8])
 def test_a_generated_house_follows_all_rules_until_a_chair_is_taken_away(seed: int) -> None:
     spec = generate(seed, kind="flat")

@@ -170,6 +170,7 @@ def doors_of(spec: mujoco.MjSpec) -> list[Doorway]:
     return measured("door", model, data, read_labels(model), read_rooms(model))
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("seed", [2, 3])
 def test_the_doors_of_a_compiled_house_are_those_that_were_drawn(seed: int) -> None:
     house = generate_house(seed, HouseConfig(kind="flat", area_m2=90.0, clutter=0.0))

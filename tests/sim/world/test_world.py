@@ -281,6 +281,7 @@ def test_the_same_actions_give_the_same_bits_whatever_ran_before():
     assert fingerprint(World(obstacle_course()), 1) == first
 
 
+@pytest.mark.costly
 def test_the_same_actions_give_the_same_bits_in_another_process():
     here = fingerprint(World(obstacle_course()), 1)
     code = "from tests.sim.world.test_world import *\nprint(fingerprint(World(obstacle_course()), 1))"

@@ -142,6 +142,7 @@ def test_the_fit_finds_how_often_a_category_is_missed():
     assert sum(row["n"] for row in quality["calibration"]) == quality["pairs"]
 
 
+@pytest.mark.costly
 def test_the_fit_finds_that_far_views_are_worth_less():
     assert fit(sampled(400, far_lies=True)).ring_weights[3] < 0.3 < fit(sampled(400)).ring_weights[3]
 

@@ -94,6 +94,7 @@ def agent_with(probability: float, look: LookConfig | None = None) -> tuple[Stub
     return agent, agent.seeker
 
 
+@pytest.mark.costly
 def test_a_doubtful_object_is_looked_at_from_two_sides_and_left():
     agent, seeker = agent_with(0.45)
     trace = run_episode(GridWorld(ROOM, START, camera=SMALL_CAMERA), agent, "bed", max_steps=90)
@@ -105,6 +106,7 @@ def test_a_doubtful_object_is_looked_at_from_two_sides_and_left():
     )
 
 
+@pytest.mark.costly
 def test_near_the_end_the_best_rejected_object_is_tried():
     agent, _ = agent_with(0.45, LookConfig(bar=((MAX_STEPS - 80, 0.3), (MAX_STEPS - 70, 0.9))))
     world = GridWorld(ROOM, START, camera=SMALL_CAMERA)
@@ -472,6 +474,7 @@ def behind_glass() -> GridWorld:
     return GridWorld([*ROOM, Box(x, y, (0.0, 0.4), "objects", seen=False)], START, camera=SMALL_CAMERA)
 
 
+@pytest.mark.costly
 def test_a_robot_that_can_reach_no_viewpoint_stops_within_the_success_distance():
     agent, _ = agent_with(0.97)
     world = behind_glass()

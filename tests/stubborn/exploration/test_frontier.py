@@ -161,6 +161,7 @@ APARTMENT = boxes_from_plan(
 START = (8.0, 0.9, 0.2)
 
 
+@pytest.mark.costly
 def test_the_frontier_agent_finds_a_bed_two_rooms_away():
     agent = agents.make("frontier-avoid", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
     assert isinstance(agent, StubbornAgent)

@@ -167,6 +167,7 @@ def test_a_stop_is_kept_for_some_steps_and_reset_forgets_it():
     assert goal_x_m(explore, navmap, Pose(-0.6, 0.0, 0.0)) < -3.0
 
 
+@pytest.mark.costly
 def test_the_agent_finds_a_bed_two_rooms_away_by_a_tour():
     apartment = boxes_from_plan(
         """

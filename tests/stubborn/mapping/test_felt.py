@@ -170,6 +170,7 @@ def test_a_line_needs_two_stops():
         LineRule(least_stops=1)
 
 
+@pytest.mark.costly
 def test_stubborn_plus_finds_the_gap_in_a_pane_of_glass():
     """The gap is 8 cm wider than the robot, and 1.3 m aside from the straight path; without `feel` 160 steps end."""
     walls = [Box((-0.1, 0.0), (0.0, 4.4)), Box((6.0, 6.1), (0.0, 4.4)), Box((0.0, 6.0), (-0.1, 0.0))]

@@ -69,6 +69,7 @@ def layers_by_brute_force(frames: list, *, of_target_pixel: bool) -> dict[str, n
     return layers
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("of_target_pixel", [False, True])
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
 def test_the_four_layers_equal_a_projection_of_every_pixel(distance_m: float, of_target_pixel: bool):

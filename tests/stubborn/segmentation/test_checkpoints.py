@@ -29,6 +29,7 @@ def published_state() -> dict[str, torch.Tensor]:
     return {name: torch.tensor(i % 7, dtype=dtype).expand(shape) for name, shape, dtype, i in values}
 
 
+@pytest.mark.costly
 def test_a_checkpoint_in_the_published_wrapper_loads_into_the_published_network(
     published_state: dict[str, torch.Tensor], tmp_path: Path
 ) -> None:

@@ -122,6 +122,7 @@ def test_resolution_and_temperature_are_stored_with_the_weights(model: RedNet, t
     assert segmenter.block_px == 4
 
 
+@pytest.mark.costly
 def test_a_mirrored_segmenter_averages_the_image_and_its_mirror_image(
     model: RedNet, frame: dict[str, np.ndarray]
 ) -> None:

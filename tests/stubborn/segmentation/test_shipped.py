@@ -51,6 +51,7 @@ def test_a_process_that_uses_it_does_not_load_the_compilers_of_pytorch() -> None
     assert done.stdout.strip() == "[]"  # 80 MB in each worker
 
 
+@pytest.mark.costly
 def test_it_is_right_at_most_pixels_in_a_house_of_val() -> None:
     scene = Scene(load_split("val").load_house("val_00"), robot=RobotConfig(), camera=CameraModel(), profile="fast")
     try:

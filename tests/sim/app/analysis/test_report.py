@@ -568,6 +568,7 @@ return [...document.querySelectorAll('.scroll')].filter(box => box.scrollWidth >
   + (document.documentElement.scrollWidth > innerWidth)"""
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("runs", [1, 2, 6])
 def test_no_column_is_clipped_at_1400_and_800_pixels(browser: Browser, pair: tuple[Path, Path], runs: int) -> None:
     houses = [line | {"house": f"a_house_{i}", "goal": "chest_of_drawers"} for i, line in enumerate(_lines(pair[0]))]

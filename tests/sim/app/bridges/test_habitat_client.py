@@ -125,6 +125,7 @@ def test_a_use_of_a_package_that_is_not_installed_is_an_error_that_names_it() ->
     agent.close()
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(
     ("words", "script", "reason"),
     [

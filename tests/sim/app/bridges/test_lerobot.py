@@ -62,6 +62,7 @@ def test_actions_goals_and_tasks_in_the_form_of_policies() -> None:
             features.picture_of(np.zeros((480, 640, 3), np.uint8), width_px)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("run", ["oracle", "noisy"])
 def test_a_dataset_has_the_recorded_actions_poses_and_pictures(folder: Path, tmp_path: Path, run: str) -> None:
     export(folder, run, tmp_path)
@@ -115,6 +116,7 @@ def test_the_pictures_are_those_that_the_robot_saw(folder: Path, tmp_path: Path)
     assert np.abs(seen[0].astype(int) - stored[-1].astype(int)).mean() > 12.0
 
 
+@pytest.mark.costly
 def test_a_stopped_export_goes_on_and_equals_one_without_a_stop(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -203,6 +205,7 @@ def test_a_replay_that_leaves_the_recorded_path_is_refused(folder: Path, tmp_pat
     replayer.close()
 
 
+@pytest.mark.costly
 def test_an_episode_whose_replay_is_another_one_is_named_and_left_out(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -128,6 +128,7 @@ def require_gone(folder: Path, *, within_s: float = 0.0) -> None:
     assert [pid for pid in pids if not is_gone(pid)] == []
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("fault", sample(list(FAULTS), 20))
 def test_a_fault_ends_its_episode_and_leaves_no_process_and_the_next_episode_runs(fault: str, tmp_path: Path) -> None:
     agent = make(fault, tmp_path, step_timeout_s=SOON_S if fault in SLOW else 20.0)

@@ -69,6 +69,7 @@ def results(out: Path, house: Path, agent: str, *config: str) -> list[dict[str, 
     return [{key: value for key, value in line.items() if key not in dropped} for line in lines_of(out)]
 
 
+@pytest.mark.costly
 def test_the_same_agent_gives_the_same_lines_in_this_process_and_in_its_own(
     house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -159,6 +160,7 @@ serve(Looks)
 """
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("declared", [True, False])
 @pytest.mark.parametrize("kind", ["habitat", "habitat in a process", "process"])
 def test_looks_are_actions_of_agents_that_declare_them_by_an_option(

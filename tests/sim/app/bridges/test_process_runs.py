@@ -36,6 +36,7 @@ def command(*words: object) -> str:
     return "process:" + shlex.join([sys.executable, *map(str, words)])
 
 
+@pytest.mark.costly
 def test_an_episode_in_which_the_agent_breaks_is_an_error_and_all_others_run(house: Path, tmp_path: Path) -> None:
     agent = command(CLIENT_AGENT, tmp_path / "broken")
     assert run(house, tmp_path / "run", agent, "--video", episodes=2) == 1
@@ -52,6 +53,7 @@ def test_an_episode_in_which_the_agent_breaks_is_an_error_and_all_others_run(hou
     assert np.abs(shown - (200, 120, 5)).max() < 30
 
 
+@pytest.mark.costly
 def test_a_run_is_not_resumed_with_another_command_or_other_files(
     house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -80,6 +82,7 @@ def test_a_command_that_fails_is_one_line_and_leaves_no_run(
     assert not (tmp_path / "run").exists()
 
 
+@pytest.mark.costly
 def test_an_agent_gets_step_timeout_and_true_images_when_the_command_line_says_so(house: Path, tmp_path: Path) -> None:
     own = tmp_path / "agent.py"
     shutil.copy(ROOT / "sim" / "app" / "bridges" / "stubborn_client.py", tmp_path)

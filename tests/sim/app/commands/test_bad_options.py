@@ -190,6 +190,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
 }
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(
     ("name", "words", "message"), [(name, words, message) for name, rows in BAD.items() for words, message in rows]
 )

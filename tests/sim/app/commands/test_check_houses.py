@@ -35,6 +35,7 @@ def test_houses_without_episodes_are_checked_whatever_their_endings(
     assert "second: 0 faults" in printed
 
 
+@pytest.mark.costly
 def test_advice_on_a_generated_house_is_a_note_and_no_fault(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(Args(first_seed=5003, seeds=1, kind="flat", area_m2=64.0, views=0)) == 0
     printed = capsys.readouterr().out

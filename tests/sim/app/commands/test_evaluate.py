@@ -130,6 +130,7 @@ def test_a_calibration_is_not_written_into_a_file_of_another_project(tmp_path: P
     assert file.read_bytes() == b"weights"
 
 
+@pytest.mark.costly
 def test_mirror_images_slivers_and_the_calibration_change_what_is_measured(tmp_path: Path, weights: Path) -> None:
     for name in ("one", "two"):
         write_views(tmp_path / name, 4)
@@ -151,6 +152,7 @@ def test_mirror_images_slivers_and_the_calibration_change_what_is_measured(tmp_p
     assert Iou.of(shifted.calibrated.of()).accuracy == pytest.approx(sofas / plain.matrix.sum())
 
 
+@pytest.mark.costly
 def test_two_networks_are_compared_on_the_same_views(
     tmp_path: Path, weights: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -227,6 +229,7 @@ def test_options_that_a_segmentation_of_ones_own_cannot_take_are_refused(
         evaluate_rednet.main(Args(views=(tmp_path / "views",), **options))
 
 
+@pytest.mark.costly
 def test_a_server_is_evaluated_and_calibrated_on_other_houses(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -12,6 +12,7 @@ from sim.core.interface import ConfigError
 from sim.homes.plans.plan import read_plan, write_plan
 
 
+@pytest.mark.costly
 def test_a_plan_that_exists_is_kept_and_one_of_other_options_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):

@@ -60,6 +60,7 @@ def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return requests
 
 
+@pytest.mark.costly
 def test_an_asset_that_hangs_ends_the_process_or_fails_is_left_out_and_the_next_is_made(
     tmp_path: Path, asked: Path
 ) -> None:

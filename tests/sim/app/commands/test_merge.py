@@ -35,6 +35,7 @@ def write(folder: Path, lines: Iterable[EpisodeResult], **changes: Any) -> Path:
     return folder
 
 
+@pytest.mark.costly
 def test_merged_shards_are_the_run_of_one_process(tmp_path: Path) -> None:
     furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     (tmp_path / "sofa_room.xml").write_text(furnished.spec.to_xml())

@@ -111,6 +111,7 @@ def test_explorers_are_compared_by_the_median_time_to_first_sight() -> None:
     assert ratio.verdict == "lower"
 
 
+@pytest.mark.costly
 def test_motions_have_a_column_each_and_the_orders_of_agents_are_compared() -> None:
     agents = ("stubborn", "stubborn-i", "oracle")
     setups = TABLES["motions"].setups((*agents, *(f"{agent} --motion sliding" for agent in agents)))
@@ -125,6 +126,7 @@ def test_motions_have_a_column_each_and_the_orders_of_agents_are_compared() -> N
     assert order.ends[0] <= 1 / 3 <= order.ends[1]
 
 
+@pytest.mark.costly
 def test_motions_are_compared_without_contacts_and_with_further_options() -> None:
     agents = ("stubborn", "stubborn --config agent.planning.dilation_m=0.1")
     named = [

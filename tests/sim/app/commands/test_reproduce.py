@@ -113,6 +113,7 @@ def test_another_table_reuses_existing_episodes_and_runs_the_rest(
     assert json.loads((ran.out / ORACLE / "config.json").read_text())["episodes"] == 3
 
 
+@pytest.mark.costly
 def test_a_run_of_sim_run_and_a_run_for_a_table_have_the_same_lines(ran: reproduce.Args, split: Path) -> None:
     alone = ran.out / "alone"
     options = ["--agent", AGENTS[1], "--semantics", "gt", "--split", str(split), "--episodes", "2", "--out", str(alone)]
@@ -124,6 +125,7 @@ def test_a_run_of_sim_run_and_a_run_for_a_table_have_the_same_lines(ran: reprodu
     assert first == second
 
 
+@pytest.mark.costly
 def test_after_the_time_limit_the_table_has_the_episodes_that_all_agents_ran(
     args: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -215,6 +215,7 @@ def test_a_wrong_option_is_one_line_and_status_2(
     assert message in printed
 
 
+@pytest.mark.costly
 def test_a_run_resumed_by_other_code_says_so_and_names_both(
     house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -239,6 +240,7 @@ def test_a_run_resumed_by_other_code_says_so_and_names_both(
     assert codes == ["0lder", code]
 
 
+@pytest.mark.costly
 def test_after_an_edit_of_the_agent_no_old_result_is_shown_unless_the_user_keeps_it(
     house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -259,6 +261,7 @@ def test_after_an_edit_of_the_agent_no_old_result_is_shown_unless_the_user_keeps
     assert notice[0] != notice[1]
 
 
+@pytest.mark.costly
 def test_a_key_repeats_a_run_and_a_resumed_run_and_its_shards_keep_theirs(house: Path, tmp_path: Path) -> None:
     options = ["--agent", "random", "--house", str(house), "--config", "task.max_steps=12", "--episodes", "2"]
 

@@ -36,6 +36,7 @@ def test_a_missing_package_is_reported_in_one_line_before_any_work(
     assert capsys.readouterr().err == message
 
 
+@pytest.mark.costly
 def test_the_options_of_each_command_are_known_without_the_packages() -> None:
     packages = {package for _, needed in NEEDS.values() for package in needed}
     program = f"import importlib, sys; sys.modules.update(dict.fromkeys({packages!r}))\n" + "".join(

@@ -143,6 +143,7 @@ def test_views_that_were_added_are_used_by_the_continued_run(
     assert [row["views"] for row in rows(tmp_path / "out/val.csv")] == ["3", "5"]
 
 
+@pytest.mark.costly
 def test_a_continued_run_evaluates_on_the_same_views(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write_views(tmp_path / "train", 3)
     write_views(tmp_path / "val", 20)
@@ -284,6 +285,7 @@ def test_a_card_says_which_options_of_a_training_are_of_earlier_versions(options
     assert ("earlier versions" in text) == told
 
 
+@pytest.mark.costly
 def test_the_time_limit_is_kept_when_steps_suddenly_take_longer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

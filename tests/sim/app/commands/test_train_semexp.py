@@ -66,6 +66,7 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
     assert (out / "curve.png").read_bytes()[:4] == b"\x89PNG"
 
 
+@pytest.mark.costly
 def test_other_options_and_other_plans_do_not_continue_a_run(plans: Path, tmp_path: Path):
     out = tmp_path / "run"
     assert train_semexp.main(options(plans, out, goals=8)) == 0
@@ -121,6 +122,7 @@ def test_plans_that_are_all_held_back_are_refused(plans: Path, tmp_path: Path):
         train_semexp.main(train_semexp.Args(plans=(tmp_path / "plans",), out=tmp_path / "out", minutes=0.01))
 
 
+@pytest.mark.costly
 def test_a_state_counts_goals_only_after_the_update_with_them(
     plans: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):

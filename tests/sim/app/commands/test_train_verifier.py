@@ -86,6 +86,7 @@ def test_the_recorded_command_names_all_options_that_change_the_fit_and_the_epis
     )
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("change", ["split_identity", "detector.flicker_rate", "code", "seed", "max_steps"])
 def test_a_log_of_another_split_code_or_detector_is_refused_with_the_difference(
     seats: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: str
@@ -164,6 +165,7 @@ def test_two_workers_log_the_same_as_one(seats: Path, tmp_path: Path):
     assert sorted(two, key=lambda line: line["episode_id"]) == one
 
 
+@pytest.mark.costly
 def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(seats: Path, tmp_path: Path):
     args = train_verifier.Args(
         split=str(seats), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log", out=tmp_path / "x.json"

@@ -32,6 +32,7 @@ def run_episode(house: Path, out: Path, agent: str, semantics: str, *config: str
     return json.loads((out / "results.jsonl").read_text()), set(keys)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("semantics", ["gt", "noisy"])
 @pytest.mark.parametrize(
     ("agent", "sensors"), [("tests.helpers.agents:make_spy", {"rgb", "depth"}), ("tests.helpers.agents:SPY", {"depth"})]
@@ -101,6 +102,7 @@ def test_an_agent_that_does_not_exist_is_refused(name: str, message: str) -> Non
         find_agent(name)
 
 
+@pytest.mark.costly
 def test_a_factory_with_other_arguments_is_refused_in_one_sentence(
     house: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

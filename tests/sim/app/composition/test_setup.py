@@ -30,6 +30,7 @@ from stubborn.segmentation.rednet import RedNet
 SMALL = ("camera.width_px=160", "camera.height_px=120", "task.max_steps=3")
 
 
+@pytest.mark.costly
 def test_each_name_of_a_run_is_looked_up_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[str] = []
     for name in ("find_agent", "find_explorer", "find_segmentation", "verifier_for"):

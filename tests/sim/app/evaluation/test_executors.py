@@ -42,6 +42,7 @@ def test_results_have_the_order_of_the_items_whichever_ends_first() -> None:
     assert list(ordered_map(slow_double, items, workers=2)) == [60, 2, 40, 4, 20, 6]
 
 
+@pytest.mark.costly
 def test_an_item_of_an_ordered_map_whose_worker_died_is_tried_once_more(tmp_path: Path) -> None:
     items = [tmp_path / str(i) for i in range(4)]
     assert list(ordered_map(die_the_first_time, items, workers=2)) == [item.name for item in items]
@@ -211,6 +212,7 @@ def test_machines_with_other_code_are_refused(cluster: Any, monkeypatch: pytest.
         list(executor.run(SPEC, jobs(2), on_death=never))
 
 
+@pytest.mark.costly
 def test_workers_end_with_the_process_that_started_them_in_the_middle_of_an_item(tmp_path: Path) -> None:
     markers = [tmp_path / "a", tmp_path / "b"]
     code = f"""
@@ -236,6 +238,7 @@ def wait_for(condition: Callable[[], bool], seconds: float) -> None:
         time.sleep(0.02)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("threads", "expected"), [(None, "4"), ("3", "3")])
 def test_workers_share_the_processors_unless_the_user_says_how_many_threads(
     monkeypatch: pytest.MonkeyPatch, threads: str | None, expected: str
@@ -247,6 +250,7 @@ def test_workers_share_the_processors_unless_the_user_says_how_many_threads(
     assert os.environ.get(name) == threads, "this process keeps its own setting"
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("how", ["loop", "kernel", "stop"])
 def test_a_call_that_never_returns_ends_its_item_and_no_other(how: str) -> None:
     items = [Job("hangs", "house_0", hang=how), Job("works", "house_0")]

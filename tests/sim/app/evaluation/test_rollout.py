@@ -231,6 +231,7 @@ class Signature:
         return Action.STOP
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(
     ("agent", "message"),
     [
@@ -261,6 +262,7 @@ def test_an_agent_that_breaks_ends_its_episode_as_an_error_that_names_agent_and_
     assert play_episode(env, Script([Action.STOP]), EPISODE, seed=0).end_reason == "stop"
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_a_bad_house_start_or_agent_ends_one_episode_and_errors_can_be_run_again(
     workers: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -24,6 +24,7 @@ def never(item: object, reason: str) -> dict:
     raise AssertionError(f"{item} was given up: {reason}")
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("workers", [1, 2])
 def test_each_item_gives_one_line(workers: int) -> None:
     lines = list(Processes(workers).run(SPEC, jobs(12), on_death=never))
@@ -59,6 +60,7 @@ def test_a_killed_worker_costs_its_item_one_more_try(tmp_path: Path) -> None:
     assert sorted(line["episode_id"] for line in lines) == sorted(item.episode_id for item in items)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("executor", [Processes(2), Processes(1, Isolation(needed=True))], ids=["two", "isolated"])
 def test_an_item_that_kills_every_worker_becomes_an_error_line(executor: Processes, tmp_path: Path) -> None:
     items = [*jobs(4), Job("deadly", "house_0", kill=tmp_path / "died", always=True)]

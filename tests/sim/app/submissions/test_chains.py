@@ -53,6 +53,7 @@ def test_a_recorded_chain_is_verified_equal_and_known_as_the_oracles(chains: Pat
     assert [verdict.known_path for verdict in verdicts] == ["oracle"] * 2
 
 
+@pytest.mark.costly
 def test_a_run_over_chains_is_resumed_merged_and_reported_as_others(
     chains: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -36,6 +36,7 @@ from tests.helpers.submissions import (
 )
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", RUNS)
 def test_a_recorded_run_is_verified_equal_with_its_frames(folder: Path, name: str) -> None:
     verdicts = judged(folder, folder / f"{name}.json.gz", frames=1.0)
@@ -45,12 +46,14 @@ def test_a_recorded_run_is_verified_equal_with_its_frames(folder: Path, name: st
     }  # fmt: skip
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("name", "known"), [("oracle", "oracle"), ("random", ""), ("process", "")])
 def test_actions_of_the_oracle_are_known(folder: Path, name: str, known: str) -> None:
     verdicts = judged(folder, folder / f"{name}.json.gz")
     assert [verdict.known_path for verdict in verdicts] == [known] * 3
 
 
+@pytest.mark.costly
 def test_replicates_are_verified_equal_and_cover_the_split(folder: Path, tmp_path: Path) -> None:
     run = recorded(folder / "tiny", tmp_path / "run", "oracle", "--replicates", "2", "--seed-key", "key")
     assert submit.main(submit.Args(run=run, name="Replicates", authors=("A. Author",))) == 0
@@ -133,6 +136,7 @@ LIES: dict[str, tuple[str, Edit, str]] = {
 }
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("lie", LIES)
 def test_a_replay_finds_a_lie(folder: Path, tmp_path: Path, lie: str) -> None:
     name, edit, sentence = LIES[lie]

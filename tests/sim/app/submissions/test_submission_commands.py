@@ -94,6 +94,7 @@ def small_rows(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "submissions").mkdir()
 
 
+@pytest.mark.costly
 def test_the_leaderboard_has_the_rows_that_hold(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -137,6 +138,7 @@ def test_the_leaderboard_has_the_rows_that_hold(
     assert leaderboard.main(args) == 0
 
 
+@pytest.mark.costly
 def test_a_report_that_comes_with_a_forged_submission_is_not_read(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -157,6 +159,7 @@ def test_a_report_that_comes_with_a_forged_submission_is_not_read(
     assert "| equal | 0 + 0 + 0 |" in (tmp_path / "table.md").read_text(), "the forged copy does not count"
 
 
+@pytest.mark.costly
 def test_a_report_that_contradicts_its_submission_is_made_again(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

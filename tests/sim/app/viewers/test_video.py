@@ -112,6 +112,7 @@ def test_a_video_is_h264_in_an_mp4_of_1280_pixels_and_its_name_holds_any_episode
     assert np.abs(stop - outcome).mean() > 3.0  # the outcome is shown in place of the step
 
 
+@pytest.mark.costly
 def test_a_video_plays_in_a_browser_to_its_end_and_can_be_searched(env: ObjectNavEnv, tmp_path: Path) -> None:
     if browser.missing():
         pytest.skip(str(browser.missing()))

@@ -248,6 +248,7 @@ def test_code_of_the_users_that_raises_anything_leaves_the_session_alive(
 WISH = START | {"agent": "stubborn-plus", "goal": "the bed"}
 
 
+@pytest.mark.costly
 def test_a_wish_in_words_is_played_in_a_house_of_a_split(choices, tmp_path):
     request = choices.request(WISH)
     assert request.options.goal == "the bed"
@@ -313,6 +314,7 @@ def test_an_episode_begins_at_the_chosen_start(
     assert (shown[0].x_m, shown[0].y_m, math.degrees(shown[0].yaw_rad)) == pytest.approx((x, y, 90.0), abs=0.001)
 
 
+@pytest.mark.costly
 def test_an_episode_with_a_goal_in_words_does_not_begin_at_the_goal(choices: Choices, tmp_path: Path) -> None:
     request = choices.request(START | {"split": "val", "house": "val_02", "goal": "the chair in the living room"})
     session = Session(Display(), DrivenRuns(tmp_path))
@@ -333,6 +335,7 @@ def test_a_start_is_three_numbers(start: object, choices: Choices) -> None:
         choices.request(START | {"start": start})
 
 
+@pytest.mark.costly
 def test_a_person_drives_in_a_house_without_a_goal_and_an_agent_does_not(tmp_path: Path) -> None:
     file = tmp_path / "lit.xml"
     lamp = with_box(room(5, 4), "lighting_00", centre_m=(2.0, 0, 0.45), half_m=(0.2, 0.2, 0.45))

@@ -216,6 +216,7 @@ def test_bytes_that_are_no_request_leave_no_traceback(server: Server) -> None:
 # ---- in a real browser
 
 
+@pytest.mark.costly
 def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, browser: Browser) -> None:
     browser.visit(server.address)
     wait_for(lambda: browser.run("return document.querySelectorAll('#goal option').length"))
@@ -266,6 +267,7 @@ def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, 
     wait_for(lambda: browser.run(doing).startswith("The STOP counts"))
 
 
+@pytest.mark.costly
 def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_back(
     server: Server, browser: Browser, runs: Path
 ) -> None:
@@ -319,6 +321,7 @@ def frame_now(browser: Browser) -> int:
     return int(browser.run("return document.body.dataset.step ?? -1"))
 
 
+@pytest.mark.costly
 def test_escape_and_another_house_close_the_outcome_of_each_episode(server: Server, browser: Browser) -> None:
     browser.visit(server.address)
     hidden = "return document.getElementById('outcome').hidden"
@@ -451,6 +454,7 @@ def test_only_the_page_deletes_runs(server: Server, runs: Path) -> None:
     assert (runs / "other" / "results.jsonl").is_file()
 
 
+@pytest.mark.costly
 def test_a_report_shows_its_pictures_and_videos(tmp_path: Path, browser: Browser) -> None:
     run = tmp_path / "runs" / "real"
     options = ["--split", "traps", "--agent", "oracle", "--semantics", "gt", "--episodes", "1", "--video", "--record"]
@@ -501,6 +505,7 @@ def test_nothing_is_wider_than_a_phone(server: Server, browser: Browser) -> None
         browser.resize(1400, 1000)
 
 
+@pytest.mark.costly
 def test_the_page_comes_back_when_the_server_is_killed_and_started_again(
     runs: Path, server: Server, browser: Browser
 ) -> None:

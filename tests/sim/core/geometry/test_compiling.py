@@ -40,6 +40,7 @@ def test_a_kernel_keeps_its_docstring_and_is_the_same_function_at_each_call() ->
     assert add_twice.__doc__ == "Adds a number to all values, twice."
 
 
+@pytest.mark.costly
 def test_kernels_bring_numba_when_they_are_called_and_not_when_they_are_imported() -> None:
     code = """
 import sys

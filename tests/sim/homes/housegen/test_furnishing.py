@@ -49,6 +49,7 @@ def test_a_mirror_hangs_over_each_basin_of_a_bathroom(pool):
             )
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("pool", POOLS)
 def test_a_shower_stands_in_a_corner_of_a_bathroom(pool):
     seen = 0
@@ -61,6 +62,7 @@ def test_a_shower_stands_in_a_corner_of_a_bathroom(pool):
     assert seen
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("pool", POOLS)
 def test_a_double_bed_has_a_nightstand_and_free_floor_on_both_sides(pool):
     for seed in SEEDS:
@@ -75,6 +77,7 @@ def test_a_double_bed_has_a_nightstand_and_free_floor_on_both_sides(pool):
         assert min(lo - ends[0], ends[1] - hi) > 0.5
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("pool", POOLS)
 def test_furniture_stands_away_from_a_fire(pool):
     seen = 0
@@ -88,6 +91,7 @@ def test_furniture_stands_away_from_a_fire(pool):
     assert seen
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("kind", ["living_room", "office", "studio", "bedroom"])
 def test_no_shelf_and_no_second_low_table_stands_in_the_middle_of_a_large_room(kind):
     for seed in SEEDS[:6]:

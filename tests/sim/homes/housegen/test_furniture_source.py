@@ -64,6 +64,7 @@ def empty_room() -> RoomLayout:
     return RoomLayout(0, "bedroom", Rect(0.0, 0.0, 6.0, 6.0), (), 2.6)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("pool", "seed"), HOMES)
 def test_no_design_stands_more_than_twice_in_a_home_outside_the_sets(pool, seed):
     sets = {(category, style.name) for category, use in SETS for style in CATALOGUE.styles(category, pool, use)}
@@ -114,6 +115,7 @@ def test_a_small_object_comes_in_the_colours_of_all_palettes_before_a_new_mesh_i
     assert {item.geoms[0].look.texture for item in made} == set(palettes("heldout"))
 
 
+@pytest.mark.costly
 def test_clutter_sets_the_number_of_small_objects():
     counts = [len(small(home("train", 0, clutter))) for clutter in (0.0, 0.4, 1.0)]
     assert counts[0] == 0

@@ -54,6 +54,7 @@ from tests.helpers.sampling import sample
 SEEDS = list(range(30))
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("seed", sample(SEEDS, 2))
 def test_any_seed_gives_a_house_in_the_format_that_passes_the_check(seed: int) -> None:
     house = generate_house(seed, HouseConfig(pool="heldout" if seed % 2 else "train"))
@@ -93,12 +94,14 @@ def test_a_reshaped_house_is_in_the_format() -> None:
     assert check_house(house.spec) == []
 
 
+@pytest.mark.costly
 def test_area_and_kind_of_plan_are_as_requested() -> None:
     house = generate_house(1, HouseConfig(kind="corridor", area_m2=120.0))
     assert house.plan.kind == "corridor"
     assert house.plan.area_m2 == pytest.approx(120.0, rel=0.25)
 
 
+@pytest.mark.costly
 def test_no_view_from_inside_shows_void() -> None:
     model = small(5).spec.compile()
     data = mujoco.MjData(model)
@@ -130,6 +133,7 @@ def test_errors_of_bad_requests_name_the_allowed_values() -> None:
         HouseConfig(rooms=("ballroom",))
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("area_m2", [52.0, 90.0, 200.0, 500.0])
 def test_the_area_and_the_rooms_that_are_asked_for_are_met(area_m2: float) -> None:
     config = HouseConfig(area_m2=area_m2, rooms=("office",) if area_m2 > 80.0 else ())
@@ -284,6 +288,7 @@ def test_a_house_that_breaks_the_format_does_not_replace_a_file(tmp_path: Path) 
     assert (tmp_path / "mine.xml").read_text() == "kept"
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("seed", sample([3, 5, 713], 2))
 def test_walls_of_two_rooms_overlap_nowhere_in_sight(seed: int) -> None:
     """Overlapping walls show a strip of the other room's paint."""
@@ -302,6 +307,7 @@ def test_walls_of_two_rooms_overlap_nowhere_in_sight(seed: int) -> None:
                 assert (np.minimum(end, opposite) - np.maximum(start, corner))[:2].min() < -0.001, (start, end)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("seed", sample([4, 701, 702], 2))
 def test_doors_of_bedrooms_and_bathrooms_have_a_leaf_and_rooms_a_ceiling_lamp(seed: int) -> None:
     """702 has a bed with a canopy below the middle of a ceiling."""
@@ -320,6 +326,7 @@ def test_doors_of_bedrooms_and_bathrooms_have_a_leaf_and_rooms_a_ceiling_lamp(se
         assert any(is_in(room, lamp) and lamp.high[2] > top_m - 0.1 for lamp in lamps), f"{room.name} has no lamp"
 
 
+@pytest.mark.costly
 def test_a_hazard_in_a_hallway_is_not_judged_as_furniture() -> None:
     config = HouseConfig(pool="heldout", kind="corridor", hazards=("slab",), hazard_count=4, exact=False)
     world = World(House("house", generate_house(21, config).spec))

@@ -53,6 +53,7 @@ def sampled(family: str, seed: int) -> tuple[PlacedHazard, ...]:
     return draw_hazards(np.random.default_rng(seed), (family,), "train", spec, (DOORWAY,), 2)
 
 
+@pytest.mark.costly
 def test_a_house_with_hazards_passes_the_check_and_has_a_site_for_each() -> None:
     model = small_house().compile()
     hazards = read_hazards(model)
@@ -79,6 +80,7 @@ def test_glass_and_scan_artifacts_collide_and_are_not_rendered() -> None:
         assert categories & ({"misc"} if hazard.kind == "scan" else {"door", "window"}), hazard
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("family", FAMILIES)
 def test_each_family_finds_a_place_and_leaves_both_rooms_connected(family: str) -> None:
     hazards = [hazard for seed in range(3) for hazard in sampled(family, seed)]

@@ -135,6 +135,7 @@ def is_too_high(motion: Motion) -> bool:
     return any(contact.stopped and contact.position_m[2] > HIGH_M for contact in motion.contacts)
 
 
+@pytest.mark.costly
 def test_only_light_items_of_four_categories_are_movable_and_only_on_request() -> None:
     assert {name.rpartition("_")[0] for name in movable_names(home().spec.compile())} <= set(KINDS)
     assert not movable_bodies(generate(seed_of_home(), kind="studio", area_m2=55.0).compile())
@@ -163,6 +164,7 @@ def test_a_movable_has_exact_shapes_is_light_enough_stays_in_place_and_sleeps(na
         assert asleep(world, body)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", sample(movable_styles("chair", "stool", "plant"), 10), ids="-".join)
 @pytest.mark.parametrize("side_deg", [0, 90, 180, 225])
 def test_a_pushed_movable_slides_upright_and_sleeps_again(name: tuple[str, str, str], side_deg: int) -> None:
@@ -253,6 +255,7 @@ def test_the_check_finds_movables_that_do_not_rest() -> None:
     assert all("is not stable: after 1 s" in fault for fault in faults)
 
 
+@pytest.mark.costly
 def test_the_oracle_reaches_a_goal_among_movables() -> None:
     scene = Scene(home(), robot=RobotConfig(), camera=CameraModel(), profile="fast")
     episode = sample_episode(scene.task, "home", np.random.default_rng(0))

@@ -41,6 +41,7 @@ def test_same_seed_gives_the_same_shape(category):
         assert shape_of(make(category, seed)) == shape_of(make(category, seed))
 
 
+@pytest.mark.costly
 def test_about_half_of_the_items_have_a_shape_of_their_own():
     counts = np.zeros(2)
     for category in GOAL_CATEGORIES:

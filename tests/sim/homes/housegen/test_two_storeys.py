@@ -46,6 +46,7 @@ def test_the_house_passes_its_check_and_its_file_is_small_enough(house: House):
     assert any("bedroom" in name for name in kinds)
 
 
+@pytest.mark.costly
 def test_no_place_over_the_stairwell_or_on_the_stairs_is_free(world: World):
     up_m = upper_floor_m(world)
     (flight,) = world.labels.of_category("stairs")

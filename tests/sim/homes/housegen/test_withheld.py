@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from sim.core.interface import GOAL_CATEGORIES
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.catalogue import Style
@@ -51,6 +53,7 @@ def test_a_model_is_withheld_by_its_name_whatever_else_there_is() -> None:
     assert {style.name for style in both.styles("chair") if is_withheld(style)} >= own_before
 
 
+@pytest.mark.costly
 def test_a_house_knows_the_style_of_every_instance() -> None:
     made = generate_house(3, HouseConfig(pool="train"), restricted(CATALOGUE, "without"))
     names = {body.name for body in made.spec.bodies if body.name not in ("", "world")}

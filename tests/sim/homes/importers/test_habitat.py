@@ -259,6 +259,7 @@ def test_a_scene_of_too_many_instances_is_refused_before_they_are_placed(
     assert re.search(r"it has \d+ objects; at most 2 are allowed", failure(write_dataset(tmp_path)))
 
 
+@pytest.mark.costly
 def test_the_folder_of_a_data_set_may_be_named_by_a_dot(tmp_path: Path) -> None:
     file = write_dataset(tmp_path)
     content = json.loads(file.read_text())
@@ -281,6 +282,7 @@ _JSON = st.recursive(
 )
 
 
+@pytest.mark.costly
 @settings(max_examples=8, deadline=None)
 @given(_JSON)
 def test_any_scene_is_one_line(tmp_path_factory: pytest.TempPathFactory, scene: Any) -> None:
@@ -323,6 +325,7 @@ def test_habitats_test_data_set_is_imported(tmp_path: Path) -> None:
     assert report["furniture"] == {"dataset_test_object1": 1, "dataset_test_object2": 1}
 
 
+@pytest.mark.costly
 def test_a_part_of_a_handle_names_a_template_if_it_is_part_of_one_only(
     homes: dict[str, tuple[Path, Path, House]], tmp_path: Path
 ) -> None:

@@ -80,6 +80,7 @@ def test_the_robot_passes_the_door(split: Path) -> None:
     assert check_own_house(load_house(split / "flat.xml"))[0] == []
 
 
+@pytest.mark.costly
 def test_a_table_counts_first_and_the_proposed_one_can_be_edited(split: Path, tmp_path: Path) -> None:
     table = json.loads((split / "categories" / "flat.json").read_text())
     assert table[r"^office_chair\.008$"] == "chair"
@@ -96,6 +97,7 @@ def test_a_table_counts_first_and_the_proposed_one_can_be_edited(split: Path, tm
     assert report["left_out"] == {"bed.005: the table says void": 1}
 
 
+@pytest.mark.costly
 def test_an_obj_file_keeps_its_objects_and_colours(tmp_path: Path) -> None:
     file = write_obj(tmp_path)
     surfaces = read_obj(file, texture_px=64, losses=Losses().changes)
@@ -139,6 +141,7 @@ def test_materials_of_an_obj_file_have_an_opacity_and_a_picture_whose_name_has_s
     assert found == {"all kinds.mtl", "my picture.png", "sub/b.png"}
 
 
+@pytest.mark.costly
 def test_a_home_is_imported_again_when_its_materials_change(tmp_path: Path) -> None:
     file, out = write_obj(tmp_path), tmp_path / "out"
     file.write_text(file.read_text().replace("mtllib flat.mtl", "mtllib other.mtl"))
@@ -186,6 +189,7 @@ def test_an_object_may_be_a_single_triangle_and_a_rug_lies_flat_although_a_mat_o
     assert counts[0] == counts[1] == counts[3] > counts[2] == 0
 
 
+@pytest.mark.costly
 def test_a_home_in_one_node_gets_a_floor_and_walls(tmp_path: Path) -> None:
     whole = trimesh.util.concatenate(
         [triangles_of(piece, edge_m=0.5) for piece in PIECES if piece.kind in ("floor", "wall")]
@@ -311,6 +315,7 @@ def test_the_time_left_is_said_while_homes_are_left(
     ]
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("given", "works"), [("auto", True), ("z", True), ("y", False)])
 def test_a_room_whose_file_has_z_up_is_turned_if_it_has_no_floor_otherwise(
     given: str, works: bool, tmp_path: Path
@@ -341,6 +346,7 @@ def test_folders_without_meshes_of_their_own_are_searched(tmp_path: Path) -> Non
     assert find_files(tmp_path) == [tmp_path / "own.obj"]
 
 
+@pytest.mark.costly
 def test_a_home_without_a_goal_says_what_it_has_and_where_a_person_can_drive(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -262,6 +262,7 @@ def test_a_damaged_picture_is_reported_and_the_mesh_is_kept(tmp_path: Path) -> N
     assert list(losses) == ["A picture is damaged and cannot be read."]
 
 
+@pytest.mark.costly
 def test_a_picture_that_a_ply_file_lacks_prints_nothing(tmp_path: Path) -> None:
     (tmp_path / "x.ply").write_text(
         "ply\nformat ascii 1.0\ncomment TextureFile no.png\nelement vertex 3\nproperty float x\nproperty float y\n"

@@ -35,6 +35,7 @@ def test_a_search_ends_with_a_stop_in_reach_of_the_goal(plan: Plan, yaw_rad: flo
     assert plan.success_cells("bed")[row, col]
 
 
+@pytest.mark.costly
 def test_it_does_not_know_where_the_goal_is(plan: Plan, monkeypatch: pytest.MonkeyPatch):
     """Until a goal is in view, the search equals one in which no goal ever comes into view."""
     start = Pose(-3.5, 1.0, 2.0)

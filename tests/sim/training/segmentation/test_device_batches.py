@@ -94,6 +94,7 @@ def test_windows_show_the_object_that_was_drawn_and_are_the_same_for_the_same_st
     assert not torch.equal(batches[0, 0.5][0], batches[1, 0.5][0])
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("whole_share", [0.0, 0.5, 1.0])
 def test_statistics_of_augmented_samples_are_those_of_the_sampler(index: ViewIndex, whole_share: float) -> None:
     recipe = Recipe(phases=(Phase(share=1.0, widths=(1.0,), whole_share=whole_share),))

@@ -83,6 +83,7 @@ def test_root_weights_fall_with_the_square_root_of_the_share_up_to_a_ratio() -> 
     assert float(weights[:3].mean()) == pytest.approx(1.0)
 
 
+@pytest.mark.costly
 def test_a_tiny_network_can_be_fitted_to_one_view() -> None:
     torch.manual_seed(0)
     model = RedNet(TINY)

@@ -29,6 +29,7 @@ def views_of(house: House, *, lean: bool):
     return views
 
 
+@pytest.mark.costly
 def test_other_light_changes_colours_but_no_label_and_no_depth() -> None:
     house = House("flat", generate(3, kind="studio"))
     text = house.spec.to_xml()

@@ -1,6 +1,8 @@
 import subprocess
 import sys
 
+import pytest
+
 from sim.app.bridges.habitat_sim.finder import MODULES
 
 READ = """
@@ -24,6 +26,7 @@ def python(code: str) -> str:
     return done.stdout + done.stderr
 
 
+@pytest.mark.costly
 def test_names_that_do_nothing_can_be_imported_and_say_so_when_they_are_used() -> None:
     assert python(READ).strip() == (
         "'magnum.Matrix4.identity_init' is not part of the habitat_sim that runs on MuJoCo (docs/habitat.md)."
@@ -35,6 +38,7 @@ def test_another_habitat_sim_is_not_replaced() -> None:
     assert "`import stubborn_habitat` must come first" in python(code)
 
 
+@pytest.mark.costly
 def test_each_module_has_its_names_also_when_it_is_imported_first() -> None:
     code = f"""
 import importlib, sys, stubborn_habitat

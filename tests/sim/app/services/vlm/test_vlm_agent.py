@@ -113,6 +113,7 @@ def farthest(question: Question) -> str:
     return json.dumps({"choice": int(np.argmax([distance for distance, _ in places_of(question)])) + 1})
 
 
+@pytest.mark.costly
 def test_the_robot_heads_for_the_place_that_the_model_chooses(start: Start) -> None:
     server, world = start(scripted(farthest)), ColouredWorld(ROOMS, START)
     agent, other_than_nearest = agent_for(server, asked=("place",)), 0
@@ -134,6 +135,7 @@ def test_the_robot_heads_for_the_place_that_the_model_chooses(start: Start) -> N
     assert other_than_nearest >= 2
 
 
+@pytest.mark.costly
 def test_the_question_has_the_map_and_views_with_the_places(start: Start) -> None:
     server = start(scripted())
     run(agent_for(server), max_steps=60, goal="sofa")
@@ -153,6 +155,7 @@ def test_the_question_has_the_map_and_views_with_the_places(start: Start) -> Non
     assert "television" in text_of(question)
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("seeker", [TargetSeekerConfig(), TrackSeekerConfig()])
 def test_a_candidate_that_the_model_refuses_is_left_for_another_one(start: Start, seeker: Any) -> None:
     refused: list[Question] = []
@@ -203,6 +206,7 @@ def test_the_truth_is_not_checked(start: Start) -> None:
     assert len(server.requests) == 1  # whether it is there
 
 
+@pytest.mark.costly
 def test_after_some_failures_the_agent_decides_alone_as_the_tour_does_and_says_so(
     start: Start, caplog: pytest.LogCaptureFixture
 ) -> None:
