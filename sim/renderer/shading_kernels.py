@@ -73,9 +73,10 @@ def open_share(points: NDArray, taps: NDArray, focal_px: float, radius_m: float,
     work = np.empty((4, columns), np.float32)
     place = np.empty(columns, np.int32)
     tap = np.empty((2, 2, taps.shape[1], columns), np.float32)
-    for j in range(columns):
-        tap[0, 0, :, j], tap[0, 1, :, j] = taps[j & 1, :, 0], taps[j & 1, :, 1]
-        tap[1, 0, :, j], tap[1, 1, :, j] = taps[2 + (j & 1), :, 0], taps[2 + (j & 1), :, 1]
+    for k in range(taps.shape[1]):  # by number, since an assignment to a slice would take seconds to compile
+        for j in range(columns):
+            for odd in range(2):
+                tap[odd, 0, k, j], tap[odd, 1, k, j] = taps[2 * odd + (j & 1), k, 0], taps[2 * odd + (j & 1), k, 1]
     weight = np.float32(strength / taps.shape[1])
     for i in range(rows):
         _measure_reach(points[2, i], np.float32(radius_m * focal_px / STEP), work[0])
