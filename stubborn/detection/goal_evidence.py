@@ -68,7 +68,7 @@ class GoalEvidence:
         self._refused = set[int]()  # tracks that another judge took for something else
 
     def of_episode(self) -> Tracks:
-        """Returns the tracks, of which there are some after the first frame."""
+        """Returns the tracks of the episode; `add` comes first."""
         assert self.tracks is not None, "add comes first"
         return self.tracks
 
