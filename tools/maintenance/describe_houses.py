@@ -53,15 +53,15 @@ and [`{TABLE_FILE}`]({TABLE_FILE}).
 | `<split>/<split>.json.gz` | the index of the episodes, in the layout of Habitat's ObjectNav data sets |
 | `<split>/content/<house>.json.gz` | the episodes of one house; y points up, quaternions are xyzw |
 | `<split>/{UNREACHABLE_FILE}` | the instances that the robot cannot reach; they are not goals |
-| `train/houses.json` | the recipe and the checksum of each house of `train` |
+| `train/houses.json`, `large-test/houses.json` | the recipe and the checksum of each house of these two splits |
 | `traps/` | 21 [traps](../../docs/traps.md) with fixed start and goal |
 | `contact-*/` | traps of families, made by `stubborn traps --split` |
 | `transfer_models.txt` | the names of the imported models that only the [transfer test](../../docs/furniture.md) uses |
 | `{TABLE_FILE}` | one row for each house |
 
-The houses of `train` are not shipped as files. Each is generated at its first use, in about a second, compared with its
-checksum, and kept in `~/.cache/stubborn-objectnav`. The variables `XDG_CACHE_HOME` and `{CACHE_VARIABLE}` change this
-folder.
+The houses of `train` and `large-test` are not shipped as files. Each is generated at its first use, in about a second
+(`train`) or five seconds (`large-test`), compared with its checksum, and kept in `~/.cache/stubborn-objectnav`. The
+variables `XDG_CACHE_HOME` and `{CACHE_VARIABLE}` change this folder.
 
 ## Splits
 

@@ -1,6 +1,6 @@
 """Generates the houses of a split, or of any seeds; prints houses per second of one core and rejected tries.
 
-The houses of val, test, large and hazards are written as MJCF files, the train houses as a list with their checksums:
+The houses of most splits are written as MJCF files, those of train and large-test as a list with their checksums:
     stubborn houses generate --split val --out assets/mjcf_houses/val --workers 2
     stubborn houses generate --split train --out assets/mjcf_houses/train --workers 2
 Houses of other seeds:
@@ -12,8 +12,8 @@ Houses with models that `stubborn import furniture` has imported, and the ten ho
     stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer
 
 The houses of a split use the folder `textures` next to the split's folder, other houses a folder `textures` in their
-own folder; it is created if it is missing. The generated train houses are kept in the cache of
-`sim.episodes.house_list`, where `stubborn episodes` reads them.
+own folder; it is created if it is missing. The houses of a list are kept in the cache of `sim.episodes.house_list`,
+where `stubborn episodes` reads them.
 """
 
 from __future__ import annotations
@@ -46,7 +46,15 @@ from sim.homes.housegen.generator import HouseConfig, generate_house
 from sim.homes.housegen.imported.catalogue import ImportedFurniture
 from sim.homes.housegen.imported.library import ModelSplit
 from sim.homes.housegen.imported.transfer import TRANSFER_TEST
-from sim.homes.housegen.splits.recipes import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
+from sim.homes.housegen.splits.recipes import (
+    LISTED,
+    MAX_TRAIN_SEEDS,
+    SPLIT_VERSION,
+    SPLITS,
+    TRAIN_HOUSES,
+    Recipe,
+    train_recipe,
+)
 from sim.homes.housegen.withheld import Withheld, restricted
 from sim.houses.references import SHARED_TEXTURES
 from sim.houses.writing import house_text
@@ -57,9 +65,9 @@ class Args:
     """Generate the houses of a split or of any seeds."""
 
     out: cli.OutFolder
-    """Folder for the XML files (for train: for the list); created if missing."""
+    """Folder for the XML files (for train and large-test: for the list); created if missing."""
     split: str | None = None
-    """Name of a shipped split (val, test, large, hazards, train), whose recipes define seeds, plan kinds and sizes."""
+    """Name of a shipped split (val, large-test, train, ...), whose recipes define seeds, plan kinds and sizes."""
     houses: cli.Count | None = None
     """Number of houses; by default all of the split, or 1."""
     workers: cli.Count = 1
@@ -123,8 +131,8 @@ def main(args: Args) -> int:
                 of = f"--split {args.split}" if args.split else "--transfer-test"
                 raise ConfigError(f"--{field.name.replace('_', '-')} has no effect with {of}, whose recipes set it.")
     began_s = time.perf_counter()
-    if args.split == "train":
-        made = list(_write_train(args))
+    if args.split in LISTED:
+        made = list(_write_list(args, args.split))
     elif args.split is not None:
         made = list(_write_split(args, args.split))
     elif args.transfer_test:
@@ -145,17 +153,18 @@ def _write_split(args: Args, split: str) -> Iterator[Made]:
     yield from _written(args, ordered_map(_make, SPLITS[split][: args.houses], workers=args.workers))
 
 
-def _write_train(args: Args) -> Iterator[Made]:
-    """Writes the list of train houses; the generated houses are kept in the cache."""
-    target, listed = args.houses or TRAIN_HOUSES, []
-    folder = cache_dir() / SPLIT_VERSION / "train"
+def _write_list(args: Args, split: str) -> Iterator[Made]:
+    """Writes the list of a split's houses; the generated houses are kept in the cache."""
+    folder = cache_dir() / SPLIT_VERSION / split
     copy_textures(folder.parent / "textures")
-    recipes = {recipe.name: recipe for recipe in map(train_recipe, range(MAX_TRAIN_SEEDS))}
+    candidates = map(train_recipe, range(MAX_TRAIN_SEEDS)) if split == "train" else SPLITS[split]
+    recipes = {recipe.name: recipe for recipe in candidates}
+    target, listed = args.houses or (TRAIN_HOUSES if split == "train" else len(recipes)), []
     waiting = iter(recipes.values())
     while len(listed) < target:
         batch = list(itertools.islice(waiting, target - len(listed)))
         if not batch:
-            raise HouseError(f"Only {len(listed)} of {MAX_TRAIN_SEEDS} train seeds gave a house.")
+            raise HouseError(f"Only {len(listed)} of {len(recipes)} seeds of {split} gave a house; {target} are asked.")
         for made in ordered_map(_make, batch, workers=args.workers):
             _print_house(made)
             if made.text:

@@ -1,9 +1,9 @@
 """Recipes of the houses of the shipped splits (seed, pool, kind of plan, size), and the version of these splits.
 
 The tables here decide what is generated. `SPLITS` is for val, test, large, hazards and the test splits of the last two:
-their houses use the held-out pool and are shipped as files. `train_recipe` is for train. Train houses are not shipped
-as files: `sim.episodes.house_list` reads and writes their recipes and checksums (`train/houses.json`) and
-generates them on first use. Seeds of splits differ.
+their houses use the held-out pool. `train_recipe` is for train. The houses of `LISTED` are not shipped as files:
+`sim.episodes.house_list` reads and writes their recipes and checksums (`train/houses.json`) and generates them on first
+use. Seeds of splits differ.
 """
 
 from __future__ import annotations
@@ -29,6 +29,9 @@ SPLIT_VERSION = "4.0.0"
 A change of the generator, new files of the splits and a new version belong in one commit; the hash shows the difference
 if that was forgotten."""
 TRAIN_HOUSES = 200
+LISTED = ("train", "large-test")
+"""Splits that ship as a list of recipes: `train` has many houses, and the houses of `large-test` are as heavy as all
+those of `val` and `test` together but are needed once in a project."""
 MAX_TRAIN_SEEDS = 1_000
 """Seeds below this belong to train; a seed that gives no house is skipped."""
 
@@ -292,7 +295,7 @@ SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
         "hazards-test": _heldout("hazards-test", 160_000, _HAZARDS),
     }
 )
-"""Recipes of the houses shipped as files, by split, in the order of the episodes.
+"""Recipes of the houses by split, in the order of the episodes, without those of `train_recipe`.
 
 The houses of val and test have 60 to 250 m2, a third of them more than 120 m2. All of `large` have more than 300 m2,
 and 5 of them have two storeys. `large-test` and `hazards-test` have the sizes and rooms of `large` and `hazards` with

@@ -17,8 +17,9 @@ from sim.app import cli
 from sim.app.commands.houses.generate import Args, main
 from sim.app.commands.main import COMMANDS
 from sim.core.interface import ConfigError
+from sim.episodes.house_list import read_house_list
 from sim.episodes.splits import load_split, shipped_splits
-from sim.homes.housegen.splits.recipes import SPLIT_VERSION, SPLITS
+from sim.homes.housegen.splits.recipes import LISTED, SPLIT_VERSION, SPLITS
 from sim.homes.housegen.traps.families.catalogue import CONTACT_SPLITS
 from tests.helpers import documented
 from tests.helpers.documented import PYTHON, TRIALS, Only
@@ -28,7 +29,7 @@ ROOT = Path(__file__).resolve().parents[4]
 TRIED = [command for command, trial in TRIALS.items() if not isinstance(trial, Only)]
 OUTPUTS = ("calibration", "out", "log", "card")
 """Fields of tools' `Args` that name what they write."""
-SHIPPED = [(split, recipe.name) for split, recipes in SPLITS.items() for recipe in recipes]
+SHIPPED = [(split, recipe.name) for split, recipes in SPLITS.items() if split not in LISTED for recipe in recipes]
 
 
 @pytest.mark.costly
@@ -46,11 +47,11 @@ def test_the_tool_writes_what_is_shipped(tmp_path: Path) -> None:
     assert (tmp_path / "textures").is_dir()
 
 
-@pytest.mark.parametrize("number", sample(range(200), 1))
-def test_a_listed_train_house_comes_out_as_listed(number: int) -> None:
-    houses = load_split("train").house_list
+@pytest.mark.parametrize("split", LISTED)
+def test_a_listed_house_comes_out_as_listed(split: str) -> None:
+    houses = load_split(split).house_list
     assert houses is not None
-    name = list(houses.recipes)[number]
+    (name,) = sample(list(houses.recipes), 1)
     assert hashlib.sha256(houses.recipes[name].house_bytes()).hexdigest() == houses.sha256[name]
 
 
@@ -60,13 +61,17 @@ def test_a_shipped_split_carries_the_one_version(split: str) -> None:
     assert load_split(split).version == SPLIT_VERSION
 
 
-def test_the_tool_lists_train_houses_that_pass_and_leaves_their_files_in_the_cache(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("split", "first"), [("train", "train_000"), ("large-test", "large_test_00")])
+def test_the_tool_lists_houses_that_pass_and_leaves_their_files_in_the_cache(
+    split: str, first: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("STUBBORN_CACHE_DIR", str(tmp_path / "cache"))
-    assert main(Args(split="train", houses=1, out=tmp_path / "train")) == 0
-    assert [file.name for file in (tmp_path / "train").iterdir()] == ["houses.json"]
-    assert [file.name for file in tmp_path.rglob("*.xml")] == ["train_000.xml"]
+    assert main(Args(split=split, houses=1, out=tmp_path / split)) == 0
+    assert [file.name for file in (tmp_path / split).iterdir()] == ["houses.json"]
+    assert [file.name for file in tmp_path.rglob("*.xml")] == [f"{first}.xml"]
+    shipped = load_split(split).house_list
+    assert shipped is not None
+    assert read_house_list(tmp_path / split).sha256[first] == shipped.sha256[first]
 
 
 def test_every_documented_command_has_a_trial_and_every_trial_a_command() -> None:
