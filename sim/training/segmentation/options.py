@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.core.interface import CameraModel, ConfigError
-from sim.core.option_types import Amount, Count, OutFolder, Positive, Seed
+from sim.core.option_types import Amount, Count, OutFolder, Positive, Seed, Share
 from stubborn.segmentation.networks import NETWORKS
 
 MAY_CHANGE = (
@@ -35,6 +35,9 @@ class Args:
     init: Path | None = None
     """Initial weights: `shipped`, a file of this tool, or a checkpoint of the published network. compact-both also
     takes those of compact, and starts with their output."""
+    init_share: Share = 0.0
+    """Share of the initial weights in the network that is evaluated and kept; the rest are the trained ones. With 0.5,
+    a short training on new views keeps what the initial network knew of others (Wortsman et al. 2022)."""
     precision: str = "auto"
     """bf16, fp32, or auto: bf16 where the processor or the GPU computes with it."""
     block_px: Count = 4
@@ -74,6 +77,8 @@ def check(args: Args) -> None:
         raise ConfigError(f"--batch must be at least 2 for batch normalisation, got {args.batch}.")
     if bool(args.views) != bool(args.val_views):
         raise ConfigError("--views and --val-views are given together; without both, `stubborn views mix` makes them.")
+    if args.init_share and args.init is None:
+        raise ConfigError("--init-share needs --init: random weights have nothing to keep.")
     if args.views and args.furniture is not None:
         raise ConfigError("--furniture is for the views that this command makes; it excludes --views.")
     camera = CameraModel()

@@ -96,6 +96,7 @@ class Trainer:
             raise ConfigError(f"--views {folders}: fewer views than one batch of {args.batch} (--batch).")
         self.size, model, self.started_from = start_network(args.size, args.init)
         self.model = model.to(self.device)
+        self._initial = [parameter.detach().clone() for parameter in self.model.parameters()]
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.average = AveragedModel(self.model, multi_avg_fn=exponential_average(RECIPE.average), use_buffers=True)
         self.precision = precision_of(args.precision, self.device)
@@ -270,9 +271,15 @@ class Trainer:
         self._save_state()
 
     def _usable(self) -> RedNet:
-        """Returns the mean of the averaged weights at this and the last evaluations, normalised for whole views."""
+        """Returns the mean of the averaged weights at this and the last evaluations, normalised for whole views.
+
+        The initial weights have the share `--init-share` in it.
+        """
         now: RedNet = self.average.module  # pyright: ignore[reportAssignmentType] - the same class
         network = self.checkpoints.add(now, self.step).to(self.device)
+        with torch.no_grad():
+            for trained, initial in zip(network.parameters(), self._initial, strict=True):
+                trained.lerp_(initial, self.args.init_share)
         loader = DataLoader(self.whole, batch_size=16)
         set_normalisation(network, ((rgb.to(self.device), second.to(self.device)) for rgb, second, _ in loader))
         return network
@@ -283,7 +290,8 @@ class Trainer:
             key: None if value is None else str(value) for key, value in asdict(self.args).items()
         }
         options |= {key: [str(folder) for folder in getattr(self.args, key)] for key in ("views", "val_views")}
-        earlier = {"started_from": self.started_from} if self.started_from else {}
+        earlier: dict[str, object] = {"started_from": self.started_from} if self.started_from else {}
+        earlier |= {"averaged": True} if self.args.init_share else {}
         return earlier | {
             "block_px": self.args.block_px,
             "step": self.step,

@@ -192,13 +192,35 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
         main(options(tmp_path, out=tmp_path / "finest", **slow | {"init": tmp_path / "finer/rednet.safetensors"})) == 0
     )
     _, last = load_network(tmp_path / "finest/rednet.safetensors")
-    stages = training_stages({**last, "averaged": True})
-    text = training_text(stages[-1])
-    assert text == f"1 steps, {last['hours']} h, code {code_hash()}, then averaged with the weights before it"
+    stages = training_stages(last)
+    assert training_text(stages[-1]) == f"1 steps, {last['hours']} h, code {code_hash()}"
     folders = [stage.options["out"] for stage in stages]
     assert folders == [str(tmp_path / name) for name in ("out", "finer", "finest")]
     with pytest.raises(ConfigError, match="size 'compact'"):
         main(options(tmp_path, out=tmp_path / "other", init=first, size="compact"))
+
+
+@pytest.mark.costly
+def test_the_initial_weights_have_their_share_in_the_result(tmp_path: Path) -> None:
+    write_views(tmp_path / "train", 3)
+    write_views(tmp_path / "val", 2)
+    assert main(options(tmp_path, steps=1)) == 0
+    init = tmp_path / "out/rednet.safetensors"
+    further = {"init": init, "size": None, "rate": 0.01, "steps": 2, "evaluate_every": 2}
+    weights = {}
+    for share in (0.0, 0.25, 1.0):
+        out = tmp_path / f"share{share}"
+        assert main(options(tmp_path, out=out, init_share=share, **further)) == 0
+        network, card = load_network(out / "rednet.safetensors")
+        weights[share] = network.state_dict()["conv1.weight"]
+        averaged = ", then averaged with the weights before it" in training_text(training_stages(card)[-1])
+        assert averaged == (share > 0.0)
+    begin = load_network(init)[0].state_dict()["conv1.weight"]
+    assert torch.equal(weights[1.0], begin)
+    assert (weights[0.0] - begin).abs().max() > 1e-3
+    assert torch.allclose(weights[0.25], 0.75 * weights[0.0] + 0.25 * begin, atol=2e-4)  # files have 16 bits
+    with pytest.raises(ConfigError, match="--init-share needs --init"):
+        main(options(tmp_path, out=tmp_path / "random", init_share=0.5))
 
 
 def test_the_shipped_weights_have_a_name() -> None:
