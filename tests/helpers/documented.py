@@ -581,6 +581,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "--out runs/mine": (_ANNOUNCED),
     "stubborn seal reveal challenge/mine.sealed.json --announced challenge/mine.announced.json --repository . --out "
     "again/mine": _ANNOUNCED,
+    "stubborn seal reveal leaderboard/sealed4.sealed.json --announced leaderboard/sealed4.announced.json --repository . "
+    "--out again/sealed4": _ANNOUNCED,
     "stubborn leaderboard leaderboard": Only(_ROWS),
     "stubborn leaderboard challenge --splits revealed/sealed2027": Only(_ROWS),
     # docs/traps.md
