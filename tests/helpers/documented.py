@@ -418,8 +418,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f" --config detector.weights={{tmp}}/my_network.pt task.max_steps=5 {_SMALL} --episodes 1 --video"
         " --out {tmp}/run",
     ),
-    "stubborn train segmentation --init shipped --views runs/views_finer --val-views views_val --rate 0.0003 --hours 1"
-    " --out runs/finer": Only("docs/segmentation.md has the same command, which is tried"),
+    "stubborn train segmentation --init shipped --init-share 0.5 --views runs/views_finer --val-views views_val "
+    "--rate 0.0003 --hours 1 --out runs/finer": Only("docs/segmentation.md has the same command, which is tried"),
     "stubborn import procthor val.jsonl.gz --houses 10 --workers 2 --out runs/procthor10": _PACKAGE,
     "stubborn gallery --houses runs/procthor10/house_00003.xml --out runs/procthor10/pictures": _PACKAGE,
     "stubborn episodes --split runs/procthor10 --episodes 100": _PACKAGE,
@@ -516,11 +516,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn train segmentation --furniture runs/models --hours 1.5 --out runs/rednet": Only(
         "renders 800 views at least; test_views_mix.py and test_train_segmentation.py try its parts"
     ),
-    "stubborn train segmentation --init shipped --views views --val-views views_val --rate 0.0003 --hours 1"
-    " --out runs/finer": (
+    "stubborn train segmentation --init shipped --init-share 0.5 --views views --val-views views_val "
+    "--rate 0.0003 --hours 1 --out runs/finer": (
         _VIEWS.replace("shard 4", "shard 2") + " --extras instances",
-        "stubborn train segmentation --init shipped --views {tmp}/views --val-views {tmp}/views --rate 0.0003"
-        " --hours 0.003 --batch 2 --out {tmp}/finer",
+        "stubborn train segmentation --init shipped --init-share 0.5 --views {tmp}/views --val-views {tmp}/views "
+        "--rate 0.0003 --hours 0.003 --batch 2 --out {tmp}/finer",
     ),
     "stubborn train names --views views --val-views views_val --minutes 30 --out runs/names": (
         _VIEWS.replace("--views 4", "--views 40").replace("shard 4", "shard 40") + " --extras instances",
@@ -581,8 +581,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "--out runs/mine": (_ANNOUNCED),
     "stubborn seal reveal challenge/mine.sealed.json --announced challenge/mine.announced.json --repository . --out "
     "again/mine": _ANNOUNCED,
-    "stubborn seal reveal leaderboard/sealed4.sealed.json --announced leaderboard/sealed4.announced.json --repository . "
-    "--out again/sealed4": _ANNOUNCED,
+    "stubborn seal reveal leaderboard/sealed4.sealed.json --announced leaderboard/sealed4.announced.json "
+    "--repository . --out again/sealed4": _ANNOUNCED,
     "stubborn leaderboard leaderboard": Only(_ROWS),
     "stubborn leaderboard challenge --splits revealed/sealed2027": Only(_ROWS),
     # docs/traps.md
