@@ -30,8 +30,8 @@ A change of the generator, new files of the splits and a new version belong in o
 if that was forgotten."""
 TRAIN_HOUSES = 200
 LISTED = ("train", "large-test")
-"""Splits that ship as a list of recipes: `train` has many houses, and the houses of `large-test` are as heavy as all
-those of `val` and `test` together but are needed once in a project."""
+"""Splits that ship as a list of recipes: `train` has many houses, and the houses of `large-test` are nearly as heavy as
+those of `val` and `test` together, but are needed once in a project."""
 MAX_TRAIN_SEEDS = 1_000
 """Seeds below this belong to train; a seed that gives no house is skipped."""
 
