@@ -373,6 +373,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn compare runs/first_seeing runs/first_map": _COMPARED,
     "stubborn compare runs/random20 runs/cloned20": _COMPARED,
     "stubborn report runs/first_map": (_RECORDED, "stubborn report {tmp}/mine"),
+    f"{_RUN} --agent examples.map_agent:AGENT --semantics gt --only val_0003 --video --out runs/first_failure": (
+        f"{_RUN} --agent examples.map_agent:AGENT --semantics gt --only chair_legs_0 --split traps --video"
+        " --config task.max_steps=20 --out {tmp}/first_failure",
+    ),
     "stubborn report runs/pt_truth runs/pt_network": _REPORTED,
     "stubborn houses check --house examples/my_flat.xml": ("stubborn houses check --house examples/my_flat.xml",),
     "stubborn gallery --houses examples/my_flat.xml --out runs/flat_pictures": (
@@ -482,7 +486,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         *_TRANSFER,
         "stubborn views --split {tmp}/transfer --views 2 --seed 12 --shrink 4 --profile fast --out {tmp}/views",
     ),
-    "stubborn views --split runs/procthor --views 400 --seed 12 --shrink 2 --profile fast --out runs/views_rooms": (
+    "stubborn views --split runs/rooms --views 400 --seed 12 --shrink 2 --profile fast --out runs/views_rooms": (
         f"{_VIEWS} --seed 12",
     ),
     "stubborn evaluate --views runs/views_val runs/views_val_1": (
@@ -528,6 +532,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         " --out {tmp}/names",
     ),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
+    "stubborn views --split val --views 2000 --shrink 2 --profile fast --extras instances --out views_val": (
+        f"{_VIEWS} --extras instances",
+    ),
     "stubborn views show --views views_objects --out views.png": (
         _VIEWS,
         "stubborn views show --views {tmp}/views --out {tmp}/views.png",
