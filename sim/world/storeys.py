@@ -36,7 +36,7 @@ def _floor_tops(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float64]:
     """Returns the heights of the tops of all static floors, metres."""
     data = data_at_rest(model)
     floors = floor_geoms(model, labels)
-    ids = floors[model.geom_bodyid[floors] == 0]
+    ids = floors[model.body_weldid[model.geom_bodyid[floors]] == 0]
     rise = np.abs(data.geom_xmat[ids, 6:9] * model.geom_size[ids]).sum(axis=1)
     rise[model.geom_type[ids] == mujoco.mjtGeom.mjGEOM_PLANE] = 0.0
     return data.geom_xpos[ids, 2] + rise

@@ -531,7 +531,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn train names --views {tmp}/views --val-views {tmp}/views --minutes 0.02 --batch 2 --val-count 4"
         " --out {tmp}/names",
     ),
-    "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --extras instances --out views_val": (
         f"{_VIEWS} --extras instances",
     ),

@@ -10,6 +10,10 @@ import pytest
 
 from sim.app.commands import episodes as make_episodes
 from sim.core.interface import GOAL_CATEGORIES
+from sim.gl import mujoco
+from sim.houses.labels import read_labels
+from sim.robot.body import FLOOR_MASK
+from sim.world.storeys import floor_levels
 from tests.helpers.worlds import room, with_box
 from tools.maintenance import describe_houses
 
@@ -66,6 +70,14 @@ def test_the_checksum_is_that_of_the_file(root: Path) -> None:
 )
 def test_levels_less_than_a_metre_apart_are_one_storey(levels_m: tuple[float, ...], storeys: int) -> None:
     assert describe_houses.count_storeys(levels_m) == storeys
+
+
+def test_an_upper_floor_that_is_a_body_is_a_level() -> None:
+    spec = room(8, 4).spec.copy()
+    floor = spec.worldbody.add_body(name="floor_01", pos=(2.0, 0.0, 2.75))
+    floor.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=(1.0, 1.0, 0.05), contype=FLOOR_MASK[0])
+    model = spec.compile()
+    assert floor_levels(model, read_labels(model)) == pytest.approx((0.0, 2.8))
 
 
 def test_goals_without_an_episode_are_named_on_the_page(root: Path) -> None:

@@ -73,10 +73,14 @@ variables `XDG_CACHE_HOME` and `{CACHE_VARIABLE}` change this folder.
 | `hazards` | obstacles that depth misses or shows as passable | 30 | 2 to 30 |
 | `large-test`, `hazards-test` | other houses by the same rules, for a final measurement | 30 | as above |
 | `train` | training | 10 | 2 to 30 |
-| `contact-*` | traps, 30 a family: [val, test and heldout](../../docs/traps.md) | 1 | 2 to 11 |
+| `traps` | 21 [traps](../../docs/traps.md) made by hand | 3 | 3 to 11 |
+| `contact-val`, `contact-test` | 15 traps of each of ten families | 1 | 3 to 11 |
+| `contact-heldout` | 30 traps of each of two other families | 1 | 2 to 11 |
 
-The distance is the length of the shortest path. In `large` it may be 6 m if the robot can reach only one instance, and
-no instance of the goal is visible from the start in any direction. In `hazards` the shortest path leads past a hazard
+The areas in this table are those of the recipes. The floor area inside the walls differs: it is 57 to 234 m2 in `val`,
+58 to 234 m2 in `test`, and 292 to 684 m2 in `large`. The distance is the length of the shortest path. In `large` it is
+at least 6 m instead of 12 m if the robot can reach only one instance of the goal. From a start in `large`, no instance
+of the goal is visible, in whatever direction the robot looks. In `hazards` the shortest path leads past a hazard
 where such a path exists. A goal can always be reached on the storey of the start. The order of the
 episodes alternates between the houses, then between the goals, so that the first N episodes are balanced for any N.
 `train` uses the pool of styles `train`; the other splits use the pool `heldout`, which shares no structure, colour or
