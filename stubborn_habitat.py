@@ -14,7 +14,7 @@ install()
 
 
 def configure(**options: str) -> Any:
-    """Sets `motion`, `noise` and `profile` of simulators that are made later in this process; returns all three.
+    """Sets `motion`, `noise`, `profile` or `detectors` of simulators made later in this process; returns all four.
 
     The environment variable STUBBORN_HABITAT does the same for all processes: `motion=sliding,noise=realsense`.
 
