@@ -47,6 +47,7 @@ def test_the_tool_writes_what_is_shipped(tmp_path: Path) -> None:
     assert (tmp_path / "textures").is_dir()
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("split", LISTED)
 def test_a_listed_house_comes_out_as_listed(split: str) -> None:
     houses = load_split(split).house_list
@@ -61,6 +62,7 @@ def test_a_shipped_split_carries_the_one_version(split: str) -> None:
     assert load_split(split).version == SPLIT_VERSION
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("split", "first"), [("train", "train_000"), ("large-test", "large_test_00")])
 def test_the_tool_lists_houses_that_pass_and_leaves_their_files_in_the_cache(
     split: str, first: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -43,6 +43,7 @@ def test_the_environment_never_imports_mujoco():
     assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "False"
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("actions", ["primitive", "goal"])
 def test_the_environment_keeps_gymnasiums_contract(plans, actions):
     check_env(PlanEnv(plans, PlanEnvConfig(actions=actions, goal_steps=5)), skip_render_check=True)
