@@ -67,11 +67,10 @@ def canonical(words: Sequence[str]) -> str:
 
 
 def example_of(block: Block) -> str | None:
-    """The file of examples/ that the line above a block names, so that the block must be a part of it; or None."""
+    """The file of examples/ that the paragraph above a block names, so that the block must be a part of it; or None."""
     lines = (ROOT / block.page).read_text(encoding="utf-8").splitlines()[: block.line - 1]
-    while lines and not lines[-1].strip():
-        lines.pop()
-    named = _EXAMPLE.findall(lines[-1]) if lines else []
+    paragraph = "\n".join(lines).rstrip().rpartition("\n\n")[2]
+    named = _EXAMPLE.findall(paragraph)
     return named[-1] if named else None
 
 
