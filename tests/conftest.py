@@ -25,11 +25,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leaves a sixth of the tests that are marked `costly`; a test named on the command line always runs."""
+    """Leaves an eighth of the tests that are marked `costly`; a test named on the command line always runs."""
     if any("::" in argument for argument in config.args):
         return
     costly = [item for item in items if item.get_closest_marker("costly")]
-    left_out = set(costly) - set(sampling.sample(costly, -(-len(costly) // 6)))
+    left_out = set(costly) - set(sampling.sample(costly, -(-len(costly) // 8)))
     config.hook.pytest_deselected(items=[item for item in items if item in left_out])
     items[:] = [item for item in items if item not in left_out]
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import ast
+import functools
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -35,8 +35,10 @@ def text_of(node: ast.expr) -> str | None:
     return None
 
 
-def messages() -> Iterator[tuple[str, str]]:
-    """Yields place and text of each message that the code raises."""
+@functools.cache
+def messages() -> list[tuple[str, str]]:
+    """Returns place and text of each message that the code raises."""
+    found = []
     for package in ("sim", "stubborn"):
         for file in sorted((ROOT / package).rglob("*.py")):
             for node in ast.walk(ast.parse(file.read_text())):
@@ -48,15 +50,13 @@ def messages() -> Iterator[tuple[str, str]]:
                 ):
                     text = text_of(node.args[0])
                     if text is not None:
-                        yield f"{file.relative_to(ROOT)}:{node.lineno}", text
-
-
-MESSAGES = list(messages())
+                        found.append((f"{file.relative_to(ROOT)}:{node.lineno}", text))
+    return found
 
 
 def test_the_catalogue_has_the_messages_of_all_layers() -> None:
-    assert len(MESSAGES) > 500
-    assert {place.split("/")[1] for place, _ in MESSAGES if place.startswith("sim")} >= {
+    assert len(messages()) > 500
+    assert {place.split("/")[1] for place, _ in messages() if place.startswith("sim")} >= {
         "core",
         "houses",
         "homes",
@@ -68,7 +68,7 @@ def test_each_message_is_a_sentence() -> None:
     begins, ends = re.compile(r"[A-Z{'\"`\-]|\w+[:.=(\[ ]"), re.compile(r"[.?!]['\"`)]?$|\{\}$|'$")
     broken = [
         f"{place} {text}"
-        for place, text in MESSAGES
+        for place, text in messages()
         if not place.startswith(COMPLETED) and not (begins.match(text) and ends.search(text))
     ]
     assert broken == []
@@ -76,4 +76,4 @@ def test_each_message_is_a_sentence() -> None:
 
 @pytest.mark.parametrize("what", STUMBLES)
 def test_no_message_has_the_grammar_that_readers_stumble_over(what: str) -> None:
-    assert [f"{place} {text}" for place, text in MESSAGES if STUMBLES[what].search(text)] == []
+    assert [f"{place} {text}" for place, text in messages() if STUMBLES[what].search(text)] == []
