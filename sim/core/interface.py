@@ -13,6 +13,7 @@ import inspect
 import math
 import operator
 import re
+import reprlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass
 from types import MappingProxyType
@@ -51,6 +52,15 @@ def as_action(value: object) -> Action | None:
         return Action(operator.index(value))  # type: ignore[arg-type]
     except (TypeError, ValueError, RuntimeError):
         return None
+
+
+def require_action(value: object, allowed: Sequence[Action], remedy: str = "") -> Action:
+    """Returns the action of an integer; raises ConfigError, which ends with the remedy, if it is not allowed."""
+    action = as_action(value)
+    if action is None or action not in allowed:
+        names = ", ".join(f"{int(each)} {each.name}" for each in allowed)
+        raise ConfigError(f"An action is one of {names}; got {reprlib.repr(value)}.{remedy}")
+    return action
 
 
 MOVES: tuple[Action, ...] = (Action.STOP, Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT)

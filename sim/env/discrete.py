@@ -15,7 +15,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
-from sim.core.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
+from sim.core.interface import FORWARD_M, MOVES, TURN_RAD, Action, require_action, wrap_angle
 
 POSITION_TOLERANCE_M = 0.002
 """A forward has reached its end this near to it ..."""
@@ -168,7 +168,7 @@ class DiscreteActions(gymnasium.Wrapper[dict[str, NDArray], Any, dict[str, NDArr
         env: the environment, or wrappers around it that change neither actions nor observations.
 
     Raises:
-        ConfigError: it is another environment.
+        ConfigError: it is another environment; `step` raises it for another action.
     """
 
     def __init__(self, env: gymnasium.Env[dict[str, NDArray], Any]) -> None:
@@ -178,7 +178,7 @@ class DiscreteActions(gymnasium.Wrapper[dict[str, NDArray], Any, dict[str, NDArr
         base = env.unwrapped
         if not isinstance(base, ObjectNavVelocityEnv):
             raise ConfigError(f"DiscreteActions needs an ObjectNavVelocityEnv, got {type(base).__name__}.")
-        self.action_space = spaces.Discrete(len(Action))
+        self.action_space = spaces.Discrete(len(MOVES))
         self._period_s = base.period_s
         drive = base.robot_config.drive
         self._limits = Limits(
@@ -199,11 +199,11 @@ class DiscreteActions(gymnasium.Wrapper[dict[str, NDArray], Any, dict[str, NDArr
         """Performs one action."""
         if not self._last:
             raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
-        action, self._reward, collided = Action(action), 0.0, False
-        if action == Action.STOP:
+        chosen, self._reward, collided = require_action(action, MOVES), 0.0, False
+        if chosen == Action.STOP:
             self._hold(0.0, 0.0, stop=1.0)
         else:
-            self._controller.perform(action)
+            self._controller.perform(chosen)
             collided = self._controller.collided
         observation, _, terminated, truncated, info = self._last
         return observation, self._reward, terminated, truncated, info | {"collided": collided}

@@ -24,7 +24,7 @@ from sim.core.interface import (
     ConfigError,
     RobotModel,
     SuccessRule,
-    as_action,
+    require_action,
 )
 from sim.core.wishes import require_goal
 from sim.env.chosen_split import chosen_split
@@ -38,7 +38,7 @@ from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
 from sim.sensors.cameras import cameras_of, with_cameras
-from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
+from sim.sensors.noise import NoiseConfig, SensorNoise, noise_from_dict
 from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.sensor import Sensor, SensorContext, declared_fields
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
@@ -96,9 +96,10 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         sensors: sensors in the observation: names of `sim.sensors.standard`, or objects with the interface
             `sim.sensors.sensor.Sensor`.
         truth: further images, rendered and kept in `truth_images`, for users of the ground truth.
-        profile: rendering profile, `fast`, `good` or an object.
-        noise: noise of sensors and drive: the name of a preset of `sim.sensors.noise`, or a `NoiseConfig`. The metrics
-            are never noisy. A house whose sidecar (`sim.houses.sidecar`) fixes noise keeps its own.
+        profile: rendering profile: `fast`, `good`, an object, or a dict of the fields that differ from `fast`.
+        noise: noise of sensors and drive: the name of a preset of `sim.sensors.noise`, a `NoiseConfig`, or a dict, such
+            as `{"preset": "realsense", "pose": {"gps_std_m": 0.1}}`. The metrics are never noisy. A house whose
+            sidecar (`sim.houses.sidecar`) fixes noise keeps its own.
         render_mode: `rgb_array` or None.
         task: when a STOP succeeds, and the number of actions. This and the other configurations, `success`, `camera`,
             `scan` and `robot`, may also be a dict of some of their fields: `camera={"width_px": 128, "height_px": 96}`.
@@ -134,8 +135,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         start: Pose | None = None,
         sensors: Sequence[str | Sensor] = SENSORS,
         truth: Sequence[str] = (),
-        profile: str | RenderProfile = "fast",
-        noise: str | NoiseConfig = "none",
+        profile: str | RenderProfile | Mapping[str, object] = "fast",
+        noise: str | NoiseConfig | Mapping[str, object] = "none",
         render_mode: str | None = None,
         task: TaskConfig | Mapping[str, object] | None = None,
         success: SuccessRule | Mapping[str, object] | None = None,
@@ -147,9 +148,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         robot: RobotConfig | Mapping[str, object] | None = None,
         cached_houses: int = 1,
     ) -> None:
-        _check_options(goal, render_mode)
-        if start is not None:
-            require_start(start)
+        _check_options(goal, start, render_mode)
         self.split: Split = chosen_split(split, house, houses, labels=labels, root=root)
         if start is not None and (self.split.episodes or len(self.split.houses) != 1):
             raise ConfigError("start needs house: the episodes of a split have their own.")
@@ -164,9 +163,13 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self.render_mode = render_mode
         self.camera_model = as_settings(camera, CameraModel(), name="camera")
         self.task_config = _with_changes(as_settings(task, TaskConfig(), name="task"), success, max_steps)
-        self._profile = profile if isinstance(profile, RenderProfile) else get_profile(profile)
+        self._profile = (
+            get_profile(profile)
+            if isinstance(profile, str)
+            else as_settings(profile, get_profile("fast"), name="profile")
+        )
         self._robot = as_settings(robot, RobotConfig(), name="robot")
-        self._default_noise = self._make_noise(noise if isinstance(noise, NoiseConfig) else get_noise(noise))
+        self._default_noise = self._make_noise(noise if isinstance(noise, NoiseConfig) else noise_from_dict(noise))
         self._noise = self._default_noise
         self.observation_space = spaces.Dict({sensor.name: sensor.space(self.camera_model) for sensor in self.sensors})
         self.actions = tuple(Action) if look else MOVES
@@ -247,11 +250,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     def step(self, action: int) -> StepResult:
         """Carries out one action; see the class."""
         self.scene.task.require_running()
-        chosen = as_action(action)
-        if chosen is None or chosen not in self.actions:
-            names = ", ".join(f"{int(allowed)} {allowed.name}" for allowed in self.actions)
-            raise ConfigError(f"An action is one of {names}; got {reprlib.repr(action)}. look=True allows to tilt.")
-        return self._outcome(self.scene.world.move(chosen))
+        remedy = "" if Action.LOOK_UP in self.actions else " look=True adds LOOK_UP and LOOK_DOWN."
+        return self._outcome(self.scene.world.move(require_action(action, self.actions, remedy)))
 
     def _outcome(self, motion: Motion) -> StepResult:
         """Returns what `step` returns after a motion."""
@@ -268,7 +268,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     def draw_episode(
         self, rng: np.random.Generator, *, episode_id: str = "drawn", house: str | None = None, goal: str | None = None
     ) -> Episode:
-        """Returns a new episode in a house of this environment.
+        """Returns a new episode in a house of this environment; a running episode ends, because the robot is moved.
 
         A goal or start that is not given is that of the environment, otherwise that of the house's sidecar, otherwise
         random; a house that is not given is random.
@@ -281,17 +281,18 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             house = houses[0] if len(houses) == 1 else houses[rng.integers(len(houses))]
         fixed = self.split.sidecar(house)
         goal, start = goal or self.goal or fixed.goal, self.start or fixed.start
-        return sample_episode(self._scenes.get(house).task, house, rng, goal=goal, start=start, episode_id=episode_id)
+        task = self._scene_for_drawing(house).task
+        return sample_episode(task, house, rng, goal=goal, start=start, episode_id=episode_id)
 
     def draw_drive(self, rng: np.random.Generator, *, episode_id: str) -> Episode:
-        """Returns a new episode without a goal in the only house, for a person who drives.
+        """Returns a new episode without a goal in the only house, for a person who drives; a running episode ends.
 
         Raises:
             EpisodeError: the robot does not fit at the start.
         """
         (house,) = self.split.houses
         start = self.start or self.split.sidecar(house).start
-        return sample_drive(self._scenes.get(house).task, house, rng, start=start, episode_id=episode_id)
+        return sample_drive(self._scene_for_drawing(house).task, house, rng, start=start, episode_id=episode_id)
 
     def notes_on(self, house: str) -> tuple[str, ...]:
         """Returns sentences about what was changed in a house when it was loaded, see `House.notes`."""
@@ -315,6 +316,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._scenes.close()
         if self._shared is not None:
             self._shared.close()
+
+    def _scene_for_drawing(self, house: str) -> Scene:
+        """Returns the scene of a house and forgets the running episode, so that `step` refuses to continue it."""
+        self._scene = self._episode = self._motion = None
+        return self._scenes.get(house)
 
     def _choose(self, options: Mapping[str, Any]) -> Episode:
         unknown = sorted(set(options) - {"episode", "episode_id"})
@@ -435,8 +441,14 @@ def _with_scan(sensors: tuple[Sensor, ...], scan: ScanConfig) -> tuple[Sensor, .
     )
 
 
-def _check_options(goal: str | None, render_mode: str | None) -> None:
+def _check_options(goal: object, start: object, render_mode: object) -> None:
+    if goal is not None and not isinstance(goal, str):
+        raise ConfigError(f"goal must be a category or words, got {reprlib.repr(goal)}.")
     if goal is not None:
         require_goal(goal)
+    if start is not None and not isinstance(start, Pose):
+        raise ConfigError(f"start must be a Pose, got {reprlib.repr(start)}.")
+    if start is not None:
+        require_start(start)
     if render_mode not in (None, "rgb_array"):
         raise ConfigError(f"Unknown render_mode '{render_mode}'. Available: rgb_array.")

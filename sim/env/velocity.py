@@ -39,7 +39,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
     Args:
         period_s: time for which a command is held, a whole multiple of the tick of the drive (20 ms).
         time_limit_s: simulated time of an episode; the default is what 500 discrete actions take at most.
-        options: those of `ObjectNavEnv`, except for `max_steps`.
+        options: those of `ObjectNavEnv`, except for `max_steps` and `look`.
 
     Raises:
         ConfigError: see `ObjectNavEnv`; or a period, a limit or an action that is not allowed.
@@ -50,13 +50,18 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
     def __init__(self, *, period_s: float = 0.1, time_limit_s: float = MAX_STEPS * ACTION_S, **options: Any) -> None:
         if options.get("max_steps") is not None:
             raise ConfigError("The limit of an episode driven by velocities is time_limit_s, in place of max_steps.")
+        if options.get("look"):
+            raise ConfigError("look=True adds discrete actions, and this environment takes velocities.")
         if not 0.0 < period_s <= ACTION_S:
             raise ConfigError(f"period_s must lie in (0, {ACTION_S}] s, got {period_s}.")
         if not period_s <= time_limit_s < math.inf:
             raise ConfigError(f"time_limit_s must be finite and at least period_s = {period_s} s, got {time_limit_s}.")
         self.period_s, self.time_limit_s = period_s, time_limit_s
+        self.metadata = {**self.metadata, "render_fps": max(1, round(1.0 / period_s))}
         super().__init__(**options, max_steps=math.ceil(time_limit_s / period_s - 1e-6))
         self._steps_per_action, self._limit = max(1, round(ACTION_S / period_s)), "time_limit"
+        if self._robot.motion != "contacts":
+            raise ConfigError(f"Velocities need the motion 'contacts'; this robot has '{self._robot.motion}'.")
         drive = self._robot.drive
         ticks = period_s / drive.tick_s
         if abs(ticks - round(ticks)) > 1e-6:

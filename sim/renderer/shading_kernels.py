@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from sim.core.geometry.compiling import njit
 
 STEP = 6
 """Pixels of the image for each point of the small grid."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -90,6 +91,8 @@ def cameras_by_name(cameras: Mapping[str, CameraConfig | Mapping[str, object]]) 
     Raises:
         ConfigError: a name or a field is not allowed.
     """
+    if not isinstance(cameras, Mapping):
+        raise ConfigError(f"cameras must be a dict of cameras by name, got {reprlib.repr(cameras)}.")
     for name in cameras:
         if not _NAME.fullmatch(name):
             raise ConfigError(f"A camera's name consists of a-z, 0-9 and _, and begins with a letter; got {name!r}.")

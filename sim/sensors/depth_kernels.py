@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from sim.core.geometry.compiling import njit
 
 
 @njit(cache=True, error_model="numpy")

@@ -19,5 +19,7 @@ class TaskConfig:
     """Number of actions after which an episode is truncated."""
 
     def __post_init__(self) -> None:
-        if not 1 <= self.max_steps <= MAX_STEP_LIMIT:  # NaN is not
-            raise ConfigError(f"TaskConfig.max_steps must be in [1, {MAX_STEP_LIMIT}], got {self.max_steps}.")
+        if not isinstance(self.max_steps, int) or not 1 <= self.max_steps <= MAX_STEP_LIMIT:
+            raise ConfigError(
+                f"TaskConfig.max_steps must be a whole number in [1, {MAX_STEP_LIMIT}], got {self.max_steps!r}."
+            )

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import stat
 import tempfile
@@ -56,12 +57,15 @@ def must_compile() -> bool:
     Compiling all of them, at their first calls, takes up to a minute.
     """
     choose_cache()
-    if os.environ.get(_VARIABLE):
-        folders = [Path(os.environ[_VARIABLE])]
-    else:
-        packages = Path(__file__).resolve().parents[3]
-        folders = [packages / "sim" / "core" / "geometry", packages / "stubborn" / "kernels"]
-    return not all(any(folder.rglob("*.nbi")) for folder in folders)
+    chosen = os.environ.get(_VARIABLE)
+    shared = Path(chosen) if chosen else _user_caches() / "numba"
+    packages = Path(__file__).resolve().parents[3]
+    for folder in (packages / "sim" / "core" / "geometry", packages / "stubborn" / "kernels"):
+        # In a cache that several packages share, numba names a folder after that of the code, and a hash of its path.
+        kernels = itertools.chain(folder.rglob("*.nbi"), shared.glob(f"{folder.name}_*/*.nbi"))
+        if next(kernels, None) is None:
+            return True
+    return False
 
 
 def choose_cache() -> Path | None:
@@ -73,8 +77,7 @@ def choose_cache() -> Path | None:
     chosen = os.environ.get(_VARIABLE)
     if chosen:
         return Path(chosen) if Path(chosen) == _temporary() else None
-    caches = Path(os.environ.get("XDG_CACHE_HOME") or Path(os.path.expanduser("~")) / ".cache")
-    if any(_can_write(folder) for folder in (Path(__file__).with_name("__pycache__"), caches)):
+    if any(_can_write(folder) for folder in (Path(__file__).with_name("__pycache__"), _user_caches())):
         return None
     folder = _temporary()
     try:
@@ -87,6 +90,10 @@ def choose_cache() -> Path | None:
         folder = Path(tempfile.mkdtemp(prefix=_TEMPORARY))
     os.environ[_VARIABLE] = str(folder)
     return folder
+
+
+def _user_caches() -> Path:
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path(os.path.expanduser("~")) / ".cache")
 
 
 def _temporary() -> Path:

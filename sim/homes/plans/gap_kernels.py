@@ -1,7 +1,8 @@
 """The compiled loop that computes distances to the obstacles of a plan (`sim.homes.plans.export`)."""
 
 import numpy as np
-from numba import njit
+
+from sim.core.geometry.compiling import njit
 
 
 @njit(cache=True, error_model="numpy")

@@ -12,8 +12,10 @@ top, the cells between two rows are obstacles too where they cover one of the ro
 import math
 
 import numpy as np
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
+
+from sim.core.geometry.compiling import njit
 
 IN_VIEW = 1
 TARGET = 2

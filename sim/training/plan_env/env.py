@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sim.core.errors import ConfigError, EpisodeError
 from sim.core.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES, MAX_STEPS, MOVES, Action
+from sim.core.interface import GOAL_CATEGORIES, MAX_STEPS, MOVES, Action, require_action
 from sim.core.invocation import command
 from sim.homes.plans.episode import PlanEpisode, draw_goal, draw_goal_and_start
 from sim.homes.plans.motion_kernels import mark_square, mark_swept
@@ -131,16 +131,17 @@ class PlanEnv(gymnasium.Env[Any, Any]):
 
     def __init__(
         self,
-        plans: Path | Sequence[Path],
+        plans: str | Path | Sequence[Path],
         config: PlanEnvConfig | None = None,
         *,
         read: Callable[[Path], Plan] | None = None,
     ) -> None:
         self.config = config or PlanEnvConfig()
         self._read = read or functools.cache(read_plan)
-        self.files = sorted(plans.glob("*.npz")) if isinstance(plans, Path) else list(plans)
+        folder = Path(plans) if isinstance(plans, str | Path) else None
+        self.files = sorted(folder.glob("*.npz")) if folder is not None else list(plans)
         if not self.files:
-            where = f" in '{plans}'" if isinstance(plans, Path) else ""
+            where = f" in '{folder}'" if folder is not None else ""
             raise ConfigError(f"No plan{where}: `{command('houses', 'plans')}` writes them.")
         self._camera: tuple[int, PlanCamera] | None = None
         self._frame = GridFrame.around_start(self.config.map_cells, self.config.cell_m)
@@ -264,7 +265,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
     def _act(self, action: Any) -> None:
         """Carries out one action of the action space."""
         if self.config.actions == "primitive":
-            self._move(Action(int(action)))
+            self._move(require_action(action, MOVES))
             return
         share, frame = np.asarray(action, np.float64).reshape(2), self.window.frame
         y_m, x_m = (

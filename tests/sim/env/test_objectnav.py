@@ -154,13 +154,29 @@ def test_the_task_configuration_and_its_single_values_are_the_same_options(house
     assert whole.success_rule is rule
 
 
-def test_a_profile_is_a_name_or_an_object(house: Path) -> None:
+def test_a_profile_is_a_name_an_object_or_a_dict(house: Path) -> None:
     images = []
-    for profile in ("good", get_profile("good")):
+    good = get_profile("good")
+    for profile in ("good", good, {**vars(good), "name": "as good"}):
         env = ObjectNavEnv(house=house, goal="sofa", start=Pose(-1.0, 0.5, 0.0), camera=SMALL, profile=profile)
         images.append(env.reset(seed=0)[0]["rgb"])
         env.close()
-    np.testing.assert_array_equal(*images)
+    np.testing.assert_array_equal(images[0], images[1])
+    np.testing.assert_array_equal(images[0], images[2])
+
+
+def test_noise_may_be_a_dict_of_its_fields(house: Path) -> None:
+    env = ObjectNavEnv(house=house, camera=SMALL, noise={"pose": {"gps_std_m": 0.1}})
+    assert env.reset(seed=0)[0]["gps"].any()  # 0, 0 without noise
+    env.close()
+
+
+def test_an_episode_that_was_drawn_ends_the_running_one(env: ObjectNavEnv) -> None:
+    env.reset(seed=0)
+    env.step(Action.MOVE_FORWARD)
+    env.draw_episode(np.random.default_rng(0))
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(Action.MOVE_FORWARD)
 
 
 def test_an_episode_is_truncated_not_terminated_at_max_steps(env: ObjectNavEnv) -> None:
@@ -257,6 +273,10 @@ def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, 
         (lambda: SuccessRule(distance_m=math.nan), "SuccessRule.distance_m"),
         (lambda: SuccessRule(same_storey_m=1e308), r"1e[+]09.*1e[+]308"),
         (lambda: TaskConfig(max_steps=10**12), "max_steps"),
+        (lambda: ObjectNavEnv(max_steps=2.5), r"whole number.*2\.5"),  # type: ignore[arg-type]
+        (lambda: ObjectNavEnv(goal=3), "goal must be"),  # type: ignore[arg-type]
+        (lambda: ObjectNavEnv(house="a.xml", start=(0, 0, 0)), "start must be a Pose"),  # type: ignore[arg-type]
+        (lambda: ObjectNavEnv(cameras=["left"]), "cameras must be a dict"),  # type: ignore[arg-type]
         (lambda: Episode("e", "h", "sofa", Pose(math.nan, 0.0, 0.0)), "10000"),
         (lambda: Episode("e", "h", "sofa", Pose(1e308, 0.0, 0.0)), "10000"),
         (lambda: ObjectNavEnv(house="a.xml", start=Pose(0.0, math.inf, 0.0)), "10000"),

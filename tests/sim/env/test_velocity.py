@@ -182,6 +182,10 @@ def test_what_is_not_allowed_is_refused(env: ObjectNavVelocityEnv, tmp_path: Pat
     for wrong in wrongs:
         with pytest.raises(ConfigError, match=r"period_s|time_limit_s"):
             make(tmp_path, **wrong)
+    assert make(tmp_path, period_s=0.5).metadata["render_fps"] == 2
+    for options, message in (({"look": True}, "look=True adds"), ({"robot": {"motion": "sliding"}}, "'sliding'")):
+        with pytest.raises(ConfigError, match=message):
+            make(tmp_path, **options)
     for action in ((0.1, 0.0), (np.nan, 0.0, 0.0)):
         with pytest.raises(ConfigError, match=wording.AN_ACTION_IS_THREE_FINITE_NUMBERS):
             env.step(np.array(action))
@@ -247,7 +251,11 @@ def test_discrete_actions_end_at_the_same_places_as_in_the_discrete_environment(
 def test_a_blocked_discrete_action_ends_and_the_next_one_is_exact(tmp_path: Path) -> None:
     house = with_box(sofa_room(), "cabinet_00", centre_m=(-1.1, 1.0, 0.5), half_m=(0.1, 0.5, 0.5))
     env = DiscreteActions(make(tmp_path, house))
+    assert isinstance(env.action_space, gymnasium.spaces.Discrete)
+    assert env.action_space.n == 4
     env.reset(seed=0)
+    with pytest.raises(ConfigError, match="3 TURN_RIGHT; got 4"):
+        env.step(4)
     for number in (1, 2):
         observation, _, _, _, info = env.step(Action.MOVE_FORWARD)
         assert (info["collided"], info["collisions"]) == (True, number)

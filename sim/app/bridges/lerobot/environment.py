@@ -61,7 +61,13 @@ class LeRobotEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of array
         render_mode: str | None = "rgb_array",
     ) -> None:
         self._env = ObjectNavEnv(
-            split=split, goal=goal or None, max_steps=max_steps, profile=profile, noise=noise, sensors=("rgb",)
+            split=split,
+            goal=goal or None,
+            max_steps=max_steps,
+            profile=profile,
+            noise=noise,
+            sensors=("rgb",),
+            render_mode=render_mode,
         )
         require_one_text(self._env.split.episodes)
         self._width_px, self._max_episode_steps = width_px, max_steps
@@ -75,6 +81,7 @@ class LeRobotEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of array
         self.observation_space = spaces.Dict({"pixels": spaces.Box(0, 255, black.shape, np.uint8), **vectors})
         self.action_space = spaces.Box(-np.inf, np.inf, (len(VECTORS[ACTION]),), np.float32)
         self.task = self.task_description = ""
+        self._picture: NDArray[np.uint8] | None = None
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, object] | None = None
@@ -95,8 +102,12 @@ class LeRobotEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of array
         observation, reward, terminated, truncated, info = self._env.step(action_of(action))
         return self._seen(observation), reward, terminated, truncated, info | {"is_success": bool(reward)}
 
-    def render(self) -> NDArray[np.uint8]:
-        """Returns the picture of the robot's camera, (h, w, 3)."""
+    def render(self) -> NDArray[np.uint8] | None:
+        """Returns the picture of the robot's camera, (h, w, 3); None without `render_mode`."""
+        if self.render_mode is None:
+            return None
+        if self._picture is None:
+            raise gymnasium.error.ResetNeeded("Call reset() before the first picture.")
         return self._picture
 
     def close(self) -> None:

@@ -248,6 +248,8 @@ def test_statistics_of_parts_are_those_of_the_whole() -> None:
 
 def test_the_environment_has_observations_and_actions_of_policies(folder: Path) -> None:
     env = LeRobotEnv(split=str(folder / "tiny"), width_px=64, max_steps=5)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.render()
     observation, info = env.reset(seed=0, options={"episode_id": "tiny_0000"})
     assert env.observation_space.contains(observation)
     assert observation["pixels"].shape == (48, 64, 3)

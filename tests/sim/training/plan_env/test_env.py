@@ -65,7 +65,13 @@ def test_reward_is_the_progress_and_a_stop_at_the_goal_succeeds(plans):
     assert terminated
     assert info["success"] == 0.0
     env.reset(options={**START, "start": Pose(1.6, 0.6, 0.0)})
+    with pytest.raises(ConfigError, match="3 TURN_RIGHT; got 4"):
+        env.step(4)
     assert env.step(Action.STOP)[4]["success"] == 1.0
+
+
+def test_the_folder_of_plans_may_be_text(plans):
+    assert PlanEnv(str(plans)).files == PlanEnv(plans).files != []
 
 
 def test_a_goal_is_driven_to_around_a_wall_and_the_episode_ends_at_sight(plans):
