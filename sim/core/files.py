@@ -22,6 +22,10 @@ from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
 
+_UMASK = os.umask(0o022)  # it can only be read by setting it
+os.umask(_UMASK)
+FILE_MODE = 0o666 & ~_UMASK
+"""Permissions of a new file, as the user's umask at the start of the process allows."""
 _PREFIX_CHARACTERS = 40
 """A part file's name begins with this many characters of the file's name, so that long names stay allowed."""
 _TRIAL_BYTES = 4096
@@ -120,7 +124,7 @@ def write_together(files: Mapping[Path, bytes | str], *, sync: bool = False) -> 
                 if sync:
                     file.flush()
                     os.fsync(file.fileno())
-            os.chmod(parts[path], 0o644)  # mkstemp gives permissions to the owner only
+            os.chmod(parts[path], FILE_MODE)  # mkstemp gives permissions to the owner only
         for path, part in parts.items():
             os.replace(part, path)
         for folder in {path.parent for path in files} if sync else ():

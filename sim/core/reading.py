@@ -11,6 +11,7 @@ import codecs
 import csv
 import gzip
 import hashlib
+import io
 import itertools
 import os
 import re
@@ -388,7 +389,7 @@ def require_small_zip(file: Path, *, what: str, most: int) -> None:
 
 
 def read_npz(
-    file: Path,
+    file: Path | bytes,
     names: Iterable[str] | None = None,
     *,
     what: str,
@@ -398,7 +399,7 @@ def read_npz(
     """Returns the arrays of an `.npz` file by name; pickled objects are refused.
 
     Args:
-        file: the file.
+        file: the file, or its content.
         names: the arrays to read; the file must have all of them. None: all arrays of the file.
         what: kind of the file for the error message, for example "trajectory".
         most_bytes: largest size of all its arrays together.
@@ -408,7 +409,8 @@ def read_npz(
         ObjectNavError: of class `error`; the file cannot be read, is damaged or too large, or lacks an array.
     """
     try:
-        with _open_plain(file) as stream, zipfile.ZipFile(stream) as archive:
+        opened = io.BytesIO(file) if isinstance(file, bytes) else _open_plain(file)
+        with opened as stream, zipfile.ZipFile(stream) as archive:
             size = sum(member.file_size for member in archive.infolist())
             if size > most_bytes:
                 raise ValueError(f"it expands to {size >> 20} MB; at most {most_bytes >> 20} MB are read")
@@ -419,7 +421,8 @@ def read_npz(
                 raise ValueError(f"it has no '{missing}'")
             return {name: _read_member(archive, name) for name in requested}
     except Exception as fault:  # damaged files raise many kinds of errors in zipfile and NumPy
-        raise error(f"'{file}' is not a {what}: {reason_of(fault)}.") from None
+        named = "This" if isinstance(file, bytes) else f"'{file}'"
+        raise error(f"{named} is not a {what}: {reason_of(fault)}.") from None
 
 
 def disguise_of(text: str) -> str:

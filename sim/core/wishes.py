@@ -227,7 +227,8 @@ def require_goal(goal: str) -> None:
 def category_of_label(goal: str) -> str | None:
     """Returns the category of the label of an instance (`chair_03`); None: it is not one."""
     category, _, number = goal.rpartition("_")
-    return category if number.isdigit() and category in MPCAT40_ID and category != "void" else None
+    numbered = number.isascii() and number.isdigit()
+    return category if numbered and category in MPCAT40_ID and category != "void" else None
 
 
 def categories_of(goal: str) -> tuple[str, ...]:

@@ -77,6 +77,10 @@ class NoisyConfig:
                 "NoisyConfig needs stride_px and sectors >= 1, miss_share > 0 and background in (0, 1), got "
                 f"{self.stride_px}, {self.sectors}, {self.miss_share} and {self.background}."
             )
+        if self.blob_px < 1 or self.outline_px < 0:
+            raise ConfigError(
+                f"NoisyConfig needs blob_px >= 1 and outline_px >= 0, got {self.blob_px} and {self.outline_px}."
+            )
         if list(self.distances_m) != sorted(self.distances_m):
             raise ConfigError(f"NoisyConfig.distances_m must grow, got {self.distances_m}.")
 

@@ -19,6 +19,7 @@ import cv2
 import numpy as np
 
 from sim.core.errors import HouseError
+from sim.core.files import FILE_MODE
 from sim.core.pictures import decode_picture, image_size_px
 from sim.core.reading import read_bytes, reason_of
 from sim.gl import mujoco
@@ -162,7 +163,7 @@ def write_files(folder: Path, files: Mapping[str, PackedFile], *, pack: bool) ->
         try:
             if pack or file.source is None or not _linked(file.source, Path(part)):
                 Path(part).write_bytes(file.content)
-                os.chmod(part, 0o644)
+                os.chmod(part, FILE_MODE)
             os.replace(part, path)
         finally:
             with contextlib.suppress(OSError):

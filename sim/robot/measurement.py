@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sim.core.interface import ConfigError
 from sim.gl import mujoco
+from sim.houses.attachments import use_absolute_paths
 from sim.houses.geoms import geom_polytope
 from sim.houses.mjcf import read_spec, require_sizes
 from sim.robot.config import RobotFile
@@ -89,7 +90,7 @@ def read_body(file: RobotFile) -> tuple[mujoco.MjSpec, mujoco.MjsBody]:
         body.name = body.name or f"body_{number}"  # the code below identifies bodies by name
         for index, geom in enumerate(body.geoms):
             geom.name = geom.name or f"{body.name}.{index}"
-    _make_paths_absolute(spec, file)
+    use_absolute_paths(spec, file.path.parent)
     _delete_unused_elements(spec)
     _require_wheel_joints(spec, file)
     pose_joints(spec, file.pose)
@@ -100,7 +101,6 @@ def read_body(file: RobotFile) -> tuple[mujoco.MjSpec, mujoco.MjsBody]:
     spec.option = mujoco.MjSpec().option  # those of the world are used
     spec.compiler.fusestatic = False  # its top body has no joint now and would be fused with the world
     root = _root_of(spec, spec.joint(file.wheel_joints[0]).parent)
-    _resolve_orientation(spec, root)
     return spec, root
 
 
@@ -182,28 +182,6 @@ def turn_to_x(file: RobotFile) -> NDArray[np.float64]:
     """Returns the rotation (3, 3) about z that turns the robot of a file to +x."""
     cos, sin = math.cos(file.heading_rad), math.sin(file.heading_rad)
     return np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _resolve_orientation(spec: mujoco.MjSpec, root: mujoco.MjsBody) -> None:
-    """Writes the orientation of the top body as a quaternion: attaching reads its Euler angles in another order."""
-    if root.alt.type == mujoco.mjtOrientation.mjORIENTATION_QUAT:
-        return
-    try:
-        root_quat = spec.copy().compile().body(root.name).quat
-    except ValueError as error:
-        raise ConfigError(f"it cannot be compiled: {' '.join(str(error).split())}") from None
-    root.quat = root_quat
-    root.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
-
-
-def _make_paths_absolute(spec: mujoco.MjSpec, file: RobotFile) -> None:
-    """Makes the paths of meshes and textures absolute, so that they survive attaching to another specification."""
-    folder = file.path.parent
-    for assets, asset_folder in ((spec.meshes, spec.meshdir), (spec.textures, spec.texturedir)):
-        for asset in assets:
-            if asset.file:
-                asset.file = str((folder / asset_folder / asset.file).resolve())
-    spec.meshdir = spec.texturedir = ""
 
 
 def _delete_unused_elements(spec: mujoco.MjSpec) -> None:

@@ -20,8 +20,6 @@ from sim.core.interface import (
     MAX_TILT_RAD,
     MPCAT40,
     POSE_SENSORS,
-    SCAN,
-    SENSORS,
     CameraModel,
 )
 from sim.sensors.measured import BumperSensor, ImuSensor, OdometrySensor
@@ -265,8 +263,8 @@ def _checked(sensor: Sensor) -> Sensor:
             f"Sensor '{sensor.name}': reads names '{unknown[0]}'. Available: {', '.join(CONTEXT_FIELDS)}; images are "
             "declared in `images`."
         )
-    taken = sensor.name in (*SENSORS, *POSE_SENSORS, SCAN)
-    if taken and type(sensor) is not type(STANDARD_SENSORS[sensor.name]):
+    standard = STANDARD_SENSORS.get(sensor.name)
+    if standard is not None and type(sensor) is not type(standard):
         raise ConfigError(f"Sensor {type(sensor).__name__} has the name of the standard sensor '{sensor.name}'.")
     return sensor
 

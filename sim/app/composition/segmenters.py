@@ -124,6 +124,14 @@ def _make_true(env: ObjectNavEnv, config: None) -> Segmenter:
     return TrueSegmentation(env)
 
 
+def _make_noisy(env: ObjectNavEnv, config: NoisyConfig) -> Segmenter:
+    camera = env.camera_model
+    if camera.width_px % config.stride_px or camera.height_px % config.stride_px:
+        size = f"{camera.width_px} x {camera.height_px}"
+        raise ConfigError(f"detector.stride_px={config.stride_px} must divide the {size} pixels of the camera.")
+    return NoisySegmenter(env, config)
+
+
 def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:
     from stubborn.segmentation.network import NetworkSegmenter
 
@@ -179,7 +187,7 @@ KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
             description="ground truth with the errors of a segmentation network",
             spec=NoisySegmenter.spec,
             config=NoisyConfig(),
-            make=NoisySegmenter,
+            make=_make_noisy,
         ),
         "rednet": SegmentationKind(
             description="the shipped RedNet, or your own with --weights",

@@ -10,6 +10,7 @@ import contextlib
 import hashlib
 import http.client
 import ipaddress
+import logging
 import math
 import time
 import urllib.error
@@ -23,11 +24,12 @@ from typing import TypeVar
 
 from sim.core.errors import AgentError, ConfigError
 from sim.core.files import write_together
-from sim.core.reading import printable, read_bytes
+from sim.core.reading import printable, read_bytes, reason_of
 
+_log = logging.getLogger(__name__)
 T = TypeVar("T")
 MAX_BYTES = 1 << 28
-"""Longest reply."""
+"""Longest reply, and the most that an NPZ file of a request expands to."""
 WAIT_S = 0.5
 """Time before a request is repeated."""
 JSON = "application/json"
@@ -118,8 +120,11 @@ class Client:
                 problem = str(error)
                 continue
             if kept is not None:
-                kept.parent.mkdir(parents=True, exist_ok=True)
-                write_together({kept: data})
+                try:
+                    kept.parent.mkdir(parents=True, exist_ok=True)
+                    write_together({kept: data})
+                except OSError as fault:  # the reply is valid, and may have been paid for
+                    _log.warning("The reply is not kept in '%s': %s.", kept.parent, reason_of(fault))
             return value
         raise AgentError(f"{url} gave no valid reply in {self._config.retries + 1} attempts: {problem}")
 

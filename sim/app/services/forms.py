@@ -10,7 +10,6 @@ import base64
 import io
 import json
 import math
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,12 +17,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.app.services.client import MAX_BYTES
 from sim.app.services.detectors import Segment
 from sim.app.services.words import category_of
 from sim.core.configuration import as_json
 from sim.core.errors import ConfigError
 from sim.core.interface import MPCAT40, CameraModel
-from sim.core.reading import parse_json, printable
+from sim.core.reading import parse_json, printable, read_npz
 from sim.training.views.coco import decode_mask
 
 
@@ -41,13 +41,12 @@ def read_view(data: bytes) -> tuple[NDArray[np.uint8], NDArray[np.float32], Came
     Raises:
         ConfigError: it is not one of `view_bytes`.
     """
-    stream = io.BytesIO(data)
+    arrays = read_npz(data, ("rgb", "depth", "camera"), what="view", most_bytes=MAX_BYTES)
+    rgb, depth = arrays["rgb"], arrays["depth"]
     try:
-        with np.load(stream, allow_pickle=False) as file:
-            rgb, depth = file["rgb"], file["depth"]
-            camera = CameraModel(**json.loads(file["camera"].tobytes()))
-    except (ValueError, KeyError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
-        raise ConfigError(f"This is not a view: {type(error).__name__}: {error}.") from None
+        camera = CameraModel(**json.loads(arrays["camera"].tobytes()))
+    except (ValueError, TypeError) as error:
+        raise ConfigError(f"This is not a view: its camera cannot be read: {error}.") from None
     size = camera.height_px, camera.width_px
     if (rgb.dtype, rgb.shape, depth.dtype, depth.shape) != (np.uint8, (*size, 3), np.float32, size):
         raise ConfigError("This is not a view: its images have other types or sizes than its camera.")

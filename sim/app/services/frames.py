@@ -12,7 +12,6 @@ import math
 import threading
 import urllib.error
 import urllib.request
-import zipfile
 from collections import deque
 from dataclasses import asdict, dataclass, fields
 
@@ -20,9 +19,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.app.services.client import opener_for
+from sim.app.services.client import MAX_BYTES, opener_for
 from sim.core.errors import ConfigError
 from sim.core.interface import CameraModel
+from sim.core.reading import read_npz
 
 TIMEOUT_S = 5.0
 MAX_FRAMES = 64
@@ -77,11 +77,9 @@ class Frame:
         Raises:
             ConfigError: the file is not one of `to_bytes`.
         """
-        stream = io.BytesIO(data)
+        arrays = read_npz(data, (*_ARRAYS, "others"), what="frame", most_bytes=MAX_BYTES)
         try:
-            with np.load(stream, allow_pickle=False) as file:
-                arrays = {name: file[name] for name in _ARRAYS}
-                others = json.loads(file["others"].tobytes())
+            others = json.loads(arrays.pop("others").tobytes())
             names, categories = tuple(map(str, others["names"])), tuple(map(str, others["categories"]))
             frame = cls(
                 **arrays,
@@ -92,7 +90,7 @@ class Frame:
                 number=int(others["number"]),
                 camera=CameraModel(**others["camera"]),
             )
-        except (ValueError, KeyError, TypeError, IndexError, OSError, EOFError, zipfile.BadZipFile) as error:
+        except (ValueError, KeyError, TypeError, IndexError) as error:
             raise ConfigError(f"This is not a frame: {type(error).__name__}: {error}.") from None
         height, width = frame.objects.shape if frame.objects.ndim == 2 else (0, 0)
         right = (

@@ -9,6 +9,7 @@ the others wall. The rest becomes objects. The result is also returned as a tabl
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -72,9 +73,10 @@ def find_files(path: Path) -> list[Path]:
         raise ConfigError(
             f"'{path}' has no file of a home, nor have the folders in it: {', '.join(f'.{kind}' for kind in FORMATS)}."
         )
-    twice = next((b.name for a, b in itertools.pairwise(files) if a.stem == b.stem), None)
-    if twice is not None:
-        raise ConfigError(f"'{path}' has two homes of the name '{Path(twice).stem}', one of them '{twice}'.")
+    name, count = Counter(file.stem for file in files).most_common(1)[0]
+    if count > 1:
+        twins = ", ".join(f"'{file.relative_to(path)}'" for file in files if file.stem == name)
+        raise ConfigError(f"'{path}' has {count} homes of the name '{name}': {twins}.")
     return files
 
 

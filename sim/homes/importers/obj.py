@@ -73,7 +73,7 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
     text = read_bytes(file, what="Mesh", error=HouseError, most=MAX_FILE_BYTES).decode("utf-8", errors="replace")
     content = _Content()
     node, material = file.stem, ""
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in _whole_lines(text):
         words = line.split()
         if not words:
             continue
@@ -101,6 +101,18 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
     if not near:
         raise HouseError(f"{where} has no triangles: each has a vertex that is not finite or beyond {FARTHEST_M:g} m.")
     return near
+
+
+def _whole_lines(text: str) -> Iterator[tuple[int, str]]:
+    """Yields each line with its number; lines that end with a backslash are continued by the next one."""
+    start, whole = 1, ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        start = start if whole else number
+        whole += line.removesuffix("\\")
+        if not line.endswith("\\"):
+            yield start, whole
+            whole = ""
+    yield start, whole
 
 
 def _vertex(words: list[str]) -> list[float]:
@@ -158,10 +170,13 @@ def _read_materials(folder: Path, name: str, texture_px: int, paints: dict[str, 
             current = " ".join(words[1:])
             paints[current] = Paint(GREY)
         elif words[:1] == ["Kd"] and current in paints and paints[current].picture is None:
-            r, g, b = map(_share, words[1:4])
-            paints[current] = replace(paints[current], rgba=(r, g, b, paints[current].rgba[3]))
+            shares = _shares(words[1:4], losses)
+            if len(shares) in (1, 3):  # the first alone is a grey
+                r, g, b = shares * (3 // len(shares))
+                paints[current] = replace(paints[current], rgba=(r, g, b, paints[current].rgba[3]))
         elif words[:1] == ["d"] and current in paints:
-            paints[current] = replace(paints[current], rgba=(*paints[current].rgba[:3], _share(words[-1])))
+            for opacity in _shares(words[-1:], losses):
+                paints[current] = replace(paints[current], rgba=(*paints[current].rgba[:3], opacity))
         elif words[:1] == ["map_Kd"] and current in paints and len(words) > 1:
             named = _picture_name(words[1:])
             picture = _pixels(_file_inside(folder, named, losses), named, texture_px, losses)
@@ -169,12 +184,16 @@ def _read_materials(folder: Path, name: str, texture_px: int, paints: dict[str, 
                 paints[current] = Paint((*WHITE[:3], paints[current].rgba[3]), picture=picture)
 
 
-def _share(word: str) -> float:
-    """Returns a number as one in [0, 1]; raises ValueError if it is not one."""
-    value = float(word)
-    if math.isnan(value):
-        raise ValueError("a colour or an opacity must be a number, got NaN")
-    return min(max(value, 0.0), 1.0)
+def _shares(words: list[str], losses: Counter[str]) -> list[float]:
+    """Returns the numbers of a colour or an opacity, each in [0, 1]; none, and a loss, if one cannot be read."""
+    try:
+        values = [float(word) for word in words]
+    except ValueError:
+        values = [math.nan]
+    if any(map(math.isnan, values)):
+        losses["A colour or an opacity of a material is not a number and was left out."] += 1
+        return []
+    return [min(max(value, 0.0), 1.0) for value in values]
 
 
 def _picture_name(words: list[str]) -> str:

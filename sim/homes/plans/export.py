@@ -138,9 +138,9 @@ def _floor(
     return np.ones(frame.shape, np.bool_) if outlines is None else covered(frame, outlines)
 
 
-def _rooms(world: World, floor_z_m: float, frame: GridFrame) -> NDArray[np.int8]:
+def _rooms(world: World, floor_z_m: float, frame: GridFrame) -> NDArray[np.int16]:
     """Returns the room of each cell; -1: none."""
-    room_of = np.full(frame.shape, -1, np.int8)
+    room_of = np.full(frame.shape, -1, np.int16)
     for number, room in enumerate(world.rooms):
         if abs(room.floor_z_m - floor_z_m) >= world.rule.same_storey_m:
             continue

@@ -54,7 +54,7 @@ class Plan:
     """Distance of the robot's centre to the border of the free space, positive inside."""
     floor: NDArray[np.bool_]
     """True: the cell's centre is on a floor of the storey."""
-    room: NDArray[np.int8]
+    room: NDArray[np.int16]
     """Index into `rooms`; -1: in no room."""
     rooms: tuple[str, ...]
     """Names of the rooms, such as `room_bedroom_00`."""

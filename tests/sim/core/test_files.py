@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -22,6 +24,13 @@ def test_a_file_is_replaced_as_a_whole_and_readable_by_all(tmp_path: Path) -> No
     assert file.read_bytes() == b"new"
     assert file.stat().st_mode & 0o777 == 0o644
     assert list(file.parent.iterdir()) == [file]
+
+
+@pytest.mark.parametrize(("umask", "mode"), [("077", 0o600), ("002", 0o664)])
+def test_a_file_has_the_permissions_that_the_umask_allows(umask: str, mode: int, tmp_path: Path) -> None:
+    code = "import sys; from pathlib import Path; from sim.core.files import write_atomically as w; w(Path('a'), b'')"
+    subprocess.run(["sh", "-c", f"umask {umask}; exec '{sys.executable}' -c \"{code}\""], cwd=tmp_path, check=True)
+    assert (tmp_path / "a").stat().st_mode & 0o777 == mode
 
 
 def test_a_failed_replacement_leaves_no_part_file(tmp_path: Path) -> None:

@@ -238,6 +238,8 @@ def test_rates_outside_their_range_are_refused():
         NoisyConfig(distances_m=(3.0, 1.0))
     with pytest.raises(ConfigError, match="stride_px and sectors >= 1"):
         NoisyConfig(stride_px=0)
+    with pytest.raises(ConfigError, match="blob_px >= 1"):
+        NoisyConfig(blob_px=0)
     assert {"lookalike_share", "miss_share"} <= set(asdict(NoisyConfig()))
 
 

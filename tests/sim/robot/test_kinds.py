@@ -112,14 +112,25 @@ def test_a_slide_is_no_wheel(tmp_path: Path) -> None:
         load_robot(file)
 
 
-def test_meshes_beside_the_folder_need_a_root(tmp_path: Path) -> None:
-    file = rover(tmp_path, deck='type="mesh" mesh="deck"')
-    mesh = tmp_path / "meshes" / "deck.obj"
-    mesh.parent.mkdir()
+def rover_with_a_mesh(folder: Path, mesh: str) -> Path:
+    """Writes a robot whose deck is a mesh at this path relative to the robot's file; the file does not name it yet."""
+    file = rover(folder, deck='type="mesh" mesh="deck"')
     corners = [(x, y, z) for x in (-0.2, 0.2) for y in (-0.14, 0.14) for z in (-0.03, 0.05)]
-    mesh.write_text(
-        "".join("v {} {} {}\n".format(*corner) for corner in corners) + "f 1 2 3\nf 4 3 2\nf 5 6 7\nf 8 7 6\n"
-    )
+    lines = [*("v {} {} {}".format(*corner) for corner in corners), "f 1 2 3", "f 4 3 2", "f 5 6 7", "f 8 7 6"]
+    (file.parent / mesh).parent.mkdir(exist_ok=True)
+    (file.parent / mesh).write_text("\n".join(lines))
+    return file
+
+
+def test_with_strippath_only_the_name_of_a_mesh_counts(tmp_path: Path) -> None:
+    file = rover_with_a_mesh(tmp_path, "deck.obj")
+    named = '<compiler strippath="true"/><asset><mesh name="deck" file="elsewhere/deck.obj"/></asset>'
+    file.write_text(file.read_text().replace("<asset/>", named))
+    World(open_floor(), robot=load_robot(file)[0]).reset(Pose(0.0, 0.0, 0.0))
+
+
+def test_meshes_beside_the_folder_need_a_root(tmp_path: Path) -> None:
+    file = rover_with_a_mesh(tmp_path, "../meshes/deck.obj")
     named = '<asset><mesh name="deck" file="../meshes/deck.obj"/></asset>'
     file.write_text(file.read_text().replace("<asset/>", named))
     with pytest.raises(ConfigError, match=r"outside of its folder.*--root"):
@@ -130,5 +141,6 @@ def test_meshes_beside_the_folder_need_a_root(tmp_path: Path) -> None:
     assert not world.move(Action.MOVE_FORWARD).collided
     assert int(mujoco.mjtGeom.mjGEOM_MESH) in world.model.geom_type
     before = robot_sha256(file, root=tmp_path)
+    mesh = tmp_path / "meshes" / "deck.obj"
     mesh.write_text(mesh.read_text().replace("-0.03", "-0.02"))
     assert robot_sha256(file, root=tmp_path) != before

@@ -48,7 +48,7 @@ class BumperNoise:
 class MissingContacts:
     """Applies a `BumperNoise`."""
 
-    sensors = ("bumper",)
+    sensors = ("switches",)
     images = ()
 
     def __init__(self, miss_rate: float) -> None:
@@ -60,15 +60,15 @@ class MissingContacts:
     def apply(
         self, readings: Mapping[str, NDArray], images: Mapping[str, NDArray], rng: np.random.Generator
     ) -> dict[str, NDArray]:
-        closed = readings["bumper"] * (rng.random(2) >= self._miss_rate)
-        return {"bumper": closed.astype(np.int8)}
+        closed = readings["switches"] * (rng.random(2) >= self._miss_rate)
+        return {"switches": closed.astype(np.int8)}
 
 
 @dataclass(frozen=True)
 class Bumper:
     """Two bumper switches, left and right: 1 after an action during which the body touched something on that side."""
 
-    name: str = "bumper"
+    name: str = "switches"
     images: tuple[str, ...] = ()
     reads: tuple[str, ...] = ("motion", "pose")
     noise: NoiseSettings | None = None
@@ -147,14 +147,14 @@ def test_an_environment_with_own_sensors_passes_the_check_of_gymnasium(house: Pa
     sensors = ("depth", Bumper(), DepthAhead())
     env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", house=house, goal="sofa", camera=SMALL, sensors=sensors)
     check_env(env.unwrapped)
-    assert list(env.reset(seed=0)[0]) == ["depth", "bumper", "ahead", *POSE_SENSORS]
+    assert list(env.reset(seed=0)[0]) == ["depth", "switches", "ahead", *POSE_SENSORS]
     env.close()
 
 
 def test_a_bumper_reads_the_contacts_of_the_last_action(house: Path) -> None:
     """The wall is 0.82 m ahead; a robot that faces it at a right angle stops at it."""
     seen = observations(house, [Action.MOVE_FORWARD] * 5, sensors=(Bumper(),))
-    assert [bool(each["bumper"].any()) for each in seen] == [False, False, False, False, True, True]
+    assert [bool(each["switches"].any()) for each in seen] == [False, False, False, False, True, True]
 
 
 def test_a_sensor_that_needs_an_image_does_not_add_it_to_the_observation(house: Path) -> None:
@@ -173,7 +173,7 @@ def test_a_sensor_that_needs_an_image_does_not_add_it_to_the_observation(house: 
 )
 def test_own_noise_is_applied_whether_the_sensor_or_the_configuration_has_it(house: Path, options: dict) -> None:
     seen = observations(house, [Action.MOVE_FORWARD] * 5, **options)
-    assert not any(each["bumper"].any() for each in seen)
+    assert not any(each["switches"].any() for each in seen)
 
 
 def test_a_standard_sensor_takes_an_own_noise_model(house: Path) -> None:
@@ -254,9 +254,18 @@ class Gps(Constant):
     name = "gps"
 
 
+class Imu(Constant):
+    name = "imu"
+
+
 @pytest.mark.parametrize(
     ("sensor", "message"),
-    [(Constant, wording.CONSTANT_IS_A_CLASS_GIVE_AN_OBJECT), (NoNoise(), "NoNoise"), (Gps(0.0), "'gps'")],
+    [
+        (Constant, wording.CONSTANT_IS_A_CLASS_GIVE_AN_OBJECT),
+        (NoNoise(), "NoNoise"),
+        (Gps(0.0), "'gps'"),
+        (Imu(0.0), "'imu'"),
+    ],
 )
 def test_an_object_that_is_no_sensor_is_refused_in_one_sentence(sensor: object, message: str) -> None:
     with pytest.raises(ConfigError, match=message):

@@ -206,7 +206,7 @@ class VlmAgent(StubbornAgent):
         else:
             answer = repr(reply)
         if self.options.transcripts is not None:
-            name = f"{self.words.replace(' ', '_')}_{self._seed}_{self.step:03d}_{what}"
+            name = f"{self.words}_{self._seed}_{self.step:03d}_{what}"
             write_transcript(self.options.transcripts, name, f"{text}\n\n-> {answer}\n", pictures)
         return reply
 

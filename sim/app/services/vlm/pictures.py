@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -148,7 +149,11 @@ def directions(places_xy_m: NDArray[np.float64], pose: Pose, views: Sequence[int
 
 
 def write_transcript(folder: Path, name: str, text: str, pictures: Sequence[NDArray[np.uint8]]) -> None:
-    """Writes a question and its reply as NAME.txt, and its pictures as NAME_1.jpg and so on."""
+    """Writes a question and its reply as NAME.txt, and its pictures as NAME_1.jpg and so on.
+
+    A goal in words may come from a file: characters of the name other than letters and digits become `_`.
+    """
+    name = re.sub(r"\W", "_", name)
     folder.mkdir(parents=True, exist_ok=True)
     write_atomically(folder / f"{name}.txt", text)
     for number, picture in enumerate(pictures, start=1):

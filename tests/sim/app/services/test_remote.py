@@ -266,6 +266,14 @@ def test_kept_replies_need_no_server_and_only_valid_ones_are_kept(start: Start, 
         asking(server.url, cache=tmp_path).posteriors(view(1))
 
 
+def test_a_reply_counts_where_it_cannot_be_kept(start: Start, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    (tmp_path / "file").touch()
+    server = start(lambda handler, body: send(handler, posteriors_bytes(probabilities())))
+    segmenter = asking(server.url, cache=tmp_path / "file")
+    np.testing.assert_array_equal(segmenter.posteriors(view()), probabilities())
+    assert "The reply is not kept" in caplog.text
+
+
 @pytest.mark.parametrize(
     "data",
     [
@@ -277,6 +285,20 @@ def test_kept_replies_need_no_server_and_only_valid_ones_are_kept(start: Start, 
 def test_other_bytes_are_no_view(data: bytes) -> None:
     with pytest.raises(ConfigError, match="not a view"):
         read_view(data)
+
+
+def test_a_damaged_view_is_refused_or_read() -> None:
+    data, rng = view_bytes(view()["rgb"], view()["depth"], CAMERA), np.random.default_rng(0)
+    refused = 0
+    for _ in range(300):
+        damaged = bytearray(data)
+        for place in rng.integers(0, len(data), 8):
+            damaged[place] = rng.integers(256)
+        try:
+            read_view(bytes(damaged))
+        except ConfigError:
+            refused += 1
+    assert refused > 200
 
 
 def test_posteriors_may_have_any_whole_fraction_of_the_size() -> None:

@@ -53,9 +53,7 @@ print("numba" in sys.modules, distance_within(np.ones((1, 1), np.bool_), 1)[0, 0
 
 
 def test_an_empty_cache_means_that_kernels_are_compiled_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        "sim.core.geometry.compiling.__file__", str(tmp_path / "a/sim/core/geometry/x.py")
-    )
+    monkeypatch.setattr("sim.core.geometry.compiling.__file__", str(tmp_path / "a/sim/core/geometry/x.py"))
     for variable, caches in (("NUMBA_CACHE_DIR", tmp_path / "chosen"), ("XDG_CACHE_HOME", tmp_path / "home" / "numba")):
         monkeypatch.setenv("NUMBA_CACHE_DIR", "")
         monkeypatch.setenv(variable, str(caches if variable == "NUMBA_CACHE_DIR" else caches.parent))

@@ -107,6 +107,18 @@ def test_an_obj_file_keeps_its_objects_and_colours(tmp_path: Path) -> None:
     assert scene.house.report["furniture"]["chair"] == 1
 
 
+def test_lines_that_other_readers_accept_lose_no_home(tmp_path: Path) -> None:
+    """A face on two lines, a colour of one number, and colours that are no numbers."""
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl grey\nf 1 \\\n2 3\nusemtl odd\nf 1 2 3"
+    (tmp_path / "home.obj").write_text(f"mtllib m.mtl\n{corners}")
+    (tmp_path / "m.mtl").write_text("newmtl grey\nKd 0.5\nd\nnewmtl odd\nKd spectral a.rfl\nd nan\n")
+    losses = Losses()
+    grey, odd = read_obj(tmp_path / "home.obj", texture_px=16, losses=losses.changes)
+    assert grey.paint.rgba == (0.5, 0.5, 0.5, 1.0)
+    assert odd.paint.rgba == (0.7, 0.7, 0.7, 1.0)
+    assert sum(losses.changes.values()) == 3
+
+
 MATERIALS = """
 newmtl red
 Kd 1 0 0
@@ -342,6 +354,10 @@ def test_folders_without_meshes_of_their_own_are_searched(tmp_path: Path) -> Non
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes(b"")
     assert find_files(tmp_path) == [tmp_path / "a/deep/flat.PLY", tmp_path / "b/home.glb"]
+    (tmp_path / "b/c.glb").write_bytes(b"")
+    (tmp_path / "a/home.glb").write_bytes(b"")  # in the sorted list, another file lies between the two homes
+    with pytest.raises(ConfigError, match="2 homes of the name 'home'"):
+        find_files(tmp_path)
     (tmp_path / "own.obj").write_bytes(b"")
     assert find_files(tmp_path) == [tmp_path / "own.obj"]
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from sim.app.evaluation.rollout import model_use_of
 from sim.app.services.vlm.agent import SPEC, VlmAgent, VlmConfig
-from sim.app.services.vlm.pictures import jpeg, outlined
+from sim.app.services.vlm.pictures import jpeg, outlined, write_transcript
 from sim.app.services.vlm.prompts import FILE, Prompts
 from sim.core.errors import AgentError, ConfigError
 from sim.core.geometry.pose import Pose
@@ -259,6 +259,13 @@ def test_transcripts_hold_questions_pictures_and_replies(start: Start, tmp_path:
     assert texts
     assert "choice=1, reason='Near.'" in texts[0].read_text()
     assert texts[0].with_name(f"{texts[0].stem}_1.jpg").read_bytes()[:2] == b"\xff\xd8"
+
+
+def test_no_words_of_a_goal_lead_a_transcript_out_of_its_folder(tmp_path: Path) -> None:
+    write_transcript(tmp_path / "in", "../the sofa_0_001_place", "text", [np.zeros((4, 4, 3), np.uint8)])
+    assert [path.name for path in tmp_path.iterdir()] == ["in"]
+    names = ["___the_sofa_0_001_place.txt", "___the_sofa_0_001_place_1.jpg"]
+    assert sorted(path.name for path in (tmp_path / "in").iterdir()) == names
 
 
 @pytest.mark.parametrize(
