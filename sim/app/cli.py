@@ -5,7 +5,7 @@ correct: a wrong option, a broken file, a full disk. 130 and 143 are Ctrl-C and 
 takes, shows the traceback as well.
 
 An option's range is declared with its type (`Seed`, `Count`, `Share`, ...), and is checked here; a file or folder that
-the command writes is an `OutFile` or `OutFolder`, and is refused before any work if it cannot be written.
+the command writes is an `OutFile`, `OutPicture` or `OutFolder`, and is refused before any work if it cannot be written.
 """
 
 from __future__ import annotations
@@ -33,13 +33,14 @@ from msgspec import Meta
 
 from sim.core import invocation
 from sim.core.errors import ConfigError, ObjectNavError, debug, debugging
-from sim.core.files import require_writable
+from sim.core.files import PICTURE_SUFFIXES, require_writable
 from sim.core.option_types import (  # noqa: F401 - commands take the types of their options from here
     Amount,
     Count,
     NotNegative,
     OutFile,
     OutFolder,
+    OutPicture,
     Positive,
     Seed,
     Share,
@@ -243,6 +244,8 @@ def _check_value(name: str, value: object, hint: object) -> None:
     for mark in _marks(hint):
         if isinstance(mark, Written) and isinstance(value, Path):
             require_writable(value, name=name, folder=mark.folder)
+            if mark.picture and value.suffix.lower() not in PICTURE_SUFFIXES:
+                raise ConfigError(f"{name} '{value}' must end with one of {', '.join(PICTURE_SUFFIXES)}.")
         elif isinstance(mark, Meta) and isinstance(value, int | float):
             _require_range(name, value, mark)
 

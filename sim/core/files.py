@@ -32,6 +32,15 @@ _TRIAL_BYTES = 4096
 """Number of bytes written to test whether a folder is writable; the test fails on a full disk."""
 
 
+PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
+"""Ends of the names of files that `write_picture` can write everywhere."""
+
+
+def file_name(text: str) -> str:
+    """Returns a text as a part of a file's name: without characters that separate folders, or modules from names."""
+    return text.replace(":", "_").replace("/", "_")
+
+
 def inside(folder: Path, name: str, *, what: str) -> Path:
     """Returns the path of a name that comes from data, in the folder to which it belongs.
 

@@ -22,6 +22,8 @@ class Written:
     """Marks an option as the path that the command writes."""
 
     folder: bool
+    picture: bool = False
+    """It is the file of a picture."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -68,4 +70,5 @@ Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 Positive = Annotated[float, Meta(gt=0.0, le=1e9)]
 NotNegative = Annotated[float, Meta(ge=0.0, le=1e9)]
 OutFile = Annotated[Path, Written(folder=False)]
+OutPicture = Annotated[Path, Written(folder=False, picture=True)]
 OutFolder = Annotated[Path, Written(folder=True)]

@@ -158,6 +158,13 @@ class Quitter:
         return Action.STOP
 
 
+def make_unable(**options: object) -> Quitter:
+    """Entry point of an agent whose actions are none."""
+    agent = Quitter()
+    agent.act = lambda observation: "left"  # type: ignore[method-assign,assignment,return-value]
+    return agent
+
+
 def make_quitter(**options: object) -> Quitter:
     """Entry point `tests.helpers.runners:make_quitter`."""
     return Quitter()

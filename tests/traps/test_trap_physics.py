@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sim.app.commands.traps.report import Args, main, make_agent
 from sim.app.commands.traps.trial import Trial, run_trial
+from sim.core.errors import AgentError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, Action, ConfigError
 from sim.env.objectnav import ObjectNavEnv
@@ -74,6 +75,12 @@ def test_the_report_takes_an_agent_of_the_user(tmp_path: Path) -> None:
     args = Args(out=tmp_path, agents=(agent,), traps=("glass_pane",), headings=1, pictures=False)
     assert main(args) == 0
     assert f"glass_pane,glass_pane_0,{agent},False" in (tmp_path / "traps.csv").read_text()
+
+
+def test_an_agent_of_the_user_that_fails_ends_the_report_with_one_sentence(tmp_path: Path) -> None:
+    args = Args(out=tmp_path, agents=("tests.helpers.runners:make_unable",), traps=("glass_pane",), headings=1)
+    with pytest.raises(AgentError, match=r"Agent 'tests.*make_unable' in house 'glass_pane': act\(\) returned 'left'"):
+        main(args)
 
 
 def test_a_report_has_results_of_one_split_and_physics_and_of_the_wanted_episodes_only(tmp_path: Path) -> None:

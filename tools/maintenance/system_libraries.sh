@@ -2,6 +2,7 @@
 # Offscreen OpenGL for MuJoCo: nothing to do where libEGL with Mesa or libOSMesa is there, else installed as root,
 # else the one line to run is printed.
 set -eu
+PATH="$PATH:/usr/sbin:/sbin"  # for ldconfig: Debian leaves these folders out of a user's PATH
 has() { ldconfig -p 2>/dev/null | grep -q "$1"; }
 if { has libEGL.so.1 && { has libEGL_mesa.so.0 || has libEGL_nvidia.so.0; }; } || has libOSMesa.so; then
     exit 0

@@ -20,6 +20,7 @@ import json
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -162,8 +163,9 @@ class Detector:
                 f"'{folder}' @vladmandic/human@3.3.6 @tensorflow/tfjs@4.22.0 @tensorflow/tfjs-backend-wasm@4.22.0"
             )
         script = Path(__file__).with_suffix(".js")
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115 - a pipe that nobody reads would block the process
         self._process = subprocess.Popen(
-            [node, str(script), str(folder)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+            [node, str(script), str(folder)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._said
         )
 
     def __enter__(self) -> Detector:
@@ -172,6 +174,7 @@ class Detector:
     def __exit__(self, *_: object) -> None:
         self._process.kill()
         self._process.communicate()
+        self._said.close()
 
     def detect(self, image: NDArray[np.uint8]) -> list[Detection]:
         """Returns the boxes in an image (h, w, 3) whose class is one of ours, in its pixels.
@@ -181,7 +184,6 @@ class Detector:
         """
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        assert self._process.stderr is not None
         frame = cv2.resize(image, (FRAME_PX, FRAME_PX), interpolation=cv2.INTER_LINEAR)
         line = b""
         try:
@@ -191,7 +193,8 @@ class Detector:
         except BrokenPipeError:
             pass
         if not line:
-            words = self._process.stderr.read().decode(errors="replace").strip().splitlines()
+            self._said.seek(0)
+            words = self._said.read().decode(errors="replace").strip().splitlines()
             raise ConfigError(f"The detector ended without a reply: {words[-1] if words else 'it said nothing'}.")
         scale = np.array([image.shape[1], image.shape[0]] * 2) / FRAME_PX
         rows = [(np.array(row[:4]) * scale, row[4], int(row[5])) for row in json.loads(line)]

@@ -40,10 +40,10 @@ from sim.app.commands.reproduce.paper_claims import MARGIN, JudgedTable, judged,
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
 from sim.app.commands.reproduce.reproduce import Args as ReproduceArgs
 from sim.app.commands.reproduce.reproduce import lines_of, make_table, part_of, shared_runs
-from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, run_in_turns, runs_in
+from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, run_in_turns, runs_in
 from sim.app.evaluation.intervals import Estimate, holm, replicate_spread
 from sim.core.errors import ConfigError
-from sim.core.files import csv_text, write_atomically, write_together
+from sim.core.files import csv_text, file_name, write_atomically, write_together
 from sim.core.reading import read_bytes, read_text
 from sim.core.reading import read_csv as read_table
 from sim.episodes.splits import load_split

@@ -53,7 +53,7 @@ class Args:
     """Check these label rules; by default, new ones are proposed."""
     out: cli.OutFile | None = None
     """Write the proposed rules to this file; an existing one is never overwritten."""
-    picture: cli.OutFile | None = None
+    picture: cli.OutPicture | None = None
     """Draw the labelled scene from above into this PNG file."""
 
 

@@ -21,7 +21,7 @@ from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import Run, read_run
 from sim.app.evaluation.config_fields import field_text, run_differences
-from sim.app.evaluation.results import RunDirectory, read_record
+from sim.app.evaluation.results import EPISODE_FOLDERS, RunDirectory, read_record
 from sim.app.evaluation.summary import summary_of
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
@@ -31,8 +31,6 @@ from sim.task.result import EpisodeResult
 SHARDS = "shard_*_of_*"
 MAX_FILE_BYTES = 4 << 30
 """Largest file of an episode that is copied; videos are the largest."""
-COPIED = ("trajectories", "pictures", "videos", "rerun", "mcap")
-"""Folders of a run with files of single episodes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,7 +147,7 @@ def copy_files(run: Run, results: Mapping[str, EpisodeResult], added: Set[str], 
         added: episodes whose result is new in the merged run.
         out: folder of the merged run.
     """
-    for name in COPIED:
+    for name in EPISODE_FOLDERS:
         for file in sorted((run.path / name).glob("*")):
             episode_id = urllib.parse.unquote(file.stem)
             result, target = run.results.get(episode_id), out / name / file.name

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from sim.app.web.choices import Offer
 
 HERE = frozenset(("127.0.0.1", "localhost", "::1"))
+ALL_INTERFACES = frozenset(("0.0.0.0", "::"))
 """Names by which this machine addresses itself."""
 
 
@@ -84,13 +85,13 @@ def main(args: Args) -> int:
     choices, folder = Choices(offer(args)), args.runs.absolute()
 
     port = listening.getsockname()[1]
-    hosts = HERE | {args.host, *args.name} - {"0.0.0.0", "::"}
+    hosts = HERE | {name.lower() for name in (args.host, *args.name)} - ALL_INTERFACES
     app = make_app(Hub(DrivenRuns(folder)), choices, Runs(folder), hosts=hosts)
     config = uvicorn.Config(
         app, log_level="warning", access_log=False, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1
     )
     show_errors_in_one_line()
-    names = sorted(hosts - HERE) or ["127.0.0.1"]
+    names = sorted(hosts - HERE) or ["127.0.0.1" if args.host in ALL_INTERFACES else args.host]
     addresses = ", ".join(f"http://{f'[{name}]' if ':' in name else name}:{port}" for name in names)
     display.make_console().print(
         f"Open {addresses} in a browser. Ctrl-C ends the server.", highlight=False, soft_wrap=True

@@ -20,7 +20,6 @@ import functools
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
@@ -63,7 +62,7 @@ _PER_LEVEL = 4
 class Args:
     """Write a split of episodes with goals in words or pictures, or of chains, in the houses of another split."""
 
-    out: Path
+    out: cli.OutFolder
     """Folder of the new split; its parent is that of the other split."""
     kind: Kind = "seen"
     """seen, unseen, synonyms, descriptions, pictures or chains."""

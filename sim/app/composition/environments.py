@@ -134,7 +134,7 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
         raise ConfigError(
             f"House '{house}' has {len(episodes)} different episode{'' if len(episodes) == 1 else 's'} with "
             f"this start and goal, but --episodes is {options.episodes} (by default {RunOptions.episodes}); give "
-            f"--episodes {len(episodes)}, or --noise."
+            f"--episodes {len(episodes)}, or --noise realsense."
         )
     return list(episodes.values())
 

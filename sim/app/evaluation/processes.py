@@ -101,7 +101,7 @@ class _Process:
         except OSError as error:  # for example a read-only /dev/shm of a container
             raise ConfigError(
                 f"Processes of workers need shared memory (/dev/shm), which cannot be used here: {reason_of(error)}. "
-                "--workers 1 needs none, except for agents of --step-timeout (give 0)."
+                "Give --workers 1 --step-timeout 0, which needs none."
             ) from None
         from_main_thread = threading.current_thread() is threading.main_thread()
         args = (child_connection, self.calls, spec, from_main_thread)

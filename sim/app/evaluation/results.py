@@ -101,6 +101,10 @@ class RunRecord(TypedDict, total=False):
     files_sha256: dict[str, str]
 
 
+EPISODE_FOLDERS = ("trajectories", "pictures", "videos", "rerun", "mcap")
+"""Folders of a run with files of single episodes."""
+
+
 @dataclass
 class RunDirectory(Generic[LineT]):
     """The folder of one run, locked against a second writer while it is open."""
@@ -140,7 +144,8 @@ class RunDirectory(Generic[LineT]):
             return
         for file in ("config.json", "results.jsonl", "summary.json", ".lock"):
             (self.path / file).unlink(missing_ok=True)
-        for folder in (self.path / "videos", *(() if self._folder_existed else (self.path,))):
+        folders = [self.path / name for name in EPISODE_FOLDERS]
+        for folder in (*folders, *(() if self._folder_existed else (self.path,))):
             with contextlib.suppress(OSError):  # it does not exist, or holds other files
                 folder.rmdir()
 

@@ -121,7 +121,8 @@ def _is_ancestor(before: str, after: str, repository: Path) -> bool:
 def _git(repository: Path, *words: str) -> str:
     done = _run(repository, *words)
     if done.returncode != 0:
-        raise ConfigError(f"git {words[0]} fails in '{repository}': {done.stderr.strip().splitlines()[-1:] or ''}.")
+        said = done.stderr.strip().splitlines() or ["it said nothing"]
+        raise ConfigError(f"git {words[0]} fails in '{repository}': {said[-1]}.")
     return done.stdout
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
@@ -98,7 +99,7 @@ def _without_folders(value: object) -> object:
 def recording(run: Run) -> str:
     """Returns the command that runs the episodes of a run again and records them."""
     config = cast(RunRecord, {**run.config, "record": True, "video": False, "shard": None})
-    return f"{command_of(config)} --out {run.path}_recorded"
+    return f"{command_of(config)} --out {shlex.quote(f'{run.path}_recorded')}"
 
 
 def _entries(run: Run) -> Iterator[Entry]:

@@ -6,7 +6,6 @@ submission, which may come from the authors.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -16,7 +15,7 @@ import msgspec
 from sim.app.submissions.audit import Checked, Choices, counts
 from sim.app.submissions.sealing import Origin
 from sim.app.submissions.verdicts import Verdict
-from sim.core.paths import processor
+from sim.core.paths import cache_dir, processor
 from sim.core.reading import Count, Number, read_json
 from sim.robot.config import PHYSICS_VERSION
 
@@ -88,9 +87,8 @@ def is_of(report: Report, checked: Checked, tolerance_m: float) -> bool:
 
 def kept_file(checked: Checked) -> Path:
     """Returns the file in the user's cache of the outcome of verifying a submission."""
-    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     split = checked.submission.manifest.split.sha256
-    return cache / "stubborn-objectnav" / "verified" / f"{checked.sha256}_{split[:16]}_{PHYSICS_VERSION}.json"
+    return cache_dir() / "verified" / f"{checked.sha256}_{split[:16]}_{PHYSICS_VERSION}.json"
 
 
 def read_report(file: Path) -> Report:

@@ -30,6 +30,7 @@ from sim.core.interface import GOAL_CATEGORIES
 from sim.core.option_types import meanings
 from sim.core.reading import convert
 from sim.core.wishes import parse_wish
+from sim.episodes.replicates import episode_of
 from sim.episodes.splits import HOUSE_SUFFIXES, Split, load_split, one_house, shipped_splits
 from sim.houses.labels import read_labels
 from sim.task.result import EpisodeResult
@@ -181,7 +182,8 @@ class Choices:
             self._require("explorer", asked.explorer, self._explorers)
         houses = self._splits[asked.split]
         house, goal = asked.house, asked.goal
-        if asked.episode and asked.split not in self._houses:
+        is_wish = number_of_wish(asked.episode, asked.house) is not None
+        if asked.episode and asked.split not in self._houses and not is_wish:
             house, goal = _place_of(asked.episode, houses, asked.split)
         in_words = goal not in houses.get(house, {})
         if in_words:
@@ -294,9 +296,19 @@ def _place_of(episode_id: str, houses: Goals, split: str) -> tuple[str, str]:
     """Returns house and goal of an episode."""
     for house, goals in houses.items():
         for goal, ids in goals.items():
-            if episode_id in ids:
+            if episode_of(episode_id) in ids:
                 return house, goal
     raise ConfigError(f"Split '{split}' has no episode '{episode_id}'.")
+
+
+WISH = "_wish_"
+"""Part of the id of an episode that the page drew for a goal in words."""
+
+
+def number_of_wish(episode_id: str | None, house: str) -> int | None:
+    """Returns the number of an episode that the page drew for a goal in words; None if the id is of another one."""
+    found = re.fullmatch(rf"{re.escape(house)}{WISH}(\d{{4,9}})", episode_id or "")
+    return None if found is None else int(found[1])
 
 
 def _settings(record: RunRecord, own: Iterable[str]) -> tuple[str, ...]:

@@ -135,7 +135,7 @@ class Runs:
             # Its large files are compressed already.
             with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED, strict_timestamps=False) as archive:
                 for file in sorted(folder.rglob("*")):
-                    if not file.name.startswith(".") and self._there(file):
+                    if not file.name.startswith(".") and not file.is_symlink() and self._there(file):
                         archive.write(file, _member(folder, file))
         except (OSError, ValueError) as error:
             packed.close()

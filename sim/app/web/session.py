@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import threading
 import traceback
@@ -18,9 +19,10 @@ from sim.app.composition.runner import Parts, build_parts
 from sim.app.composition.setup import Setup, resolve
 from sim.app.evaluation.config_fields import run_differences
 from sim.app.evaluation.results import RunRecord
-from sim.app.evaluation.rollout import give_next_goal, play_episode
+from sim.app.evaluation.rollout import give_next_goal, next_action, play_episode
 from sim.app.viewers.overlay import goal_marks
 from sim.app.viewers.viewer import Moment
+from sim.app.web.choices import WISH, number_of_wish
 from sim.app.web.controls import Controls, EpisodeRequest, Interrupted
 from sim.app.web.driven import DrivenRuns
 from sim.app.web.hints import Hints
@@ -31,6 +33,7 @@ from sim.core.interface import GOAL_CATEGORIES, Action, Agent, Closable, Observa
 from sim.core.reading import printable
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.episodes.replicates import with_replicates
 from sim.episodes.seeds import drawing_generator, episode_seeds
 from sim.task.explanations import ACTION_WORDS, explain_end, in_words, with_article
 from sim.task.result import RolloutResult
@@ -175,12 +178,14 @@ class Session:
         return self._made
 
     def _free(self) -> None:
-        if self._made is not None:
-            if isinstance(self._made.parts.agent, Closable):
-                self._made.parts.agent.close()
-            self._made.pictures.close()
-            self._made.parts.env.close()
-        self._made = None
+        made, self._made = self._made, None
+        if made is None:
+            return
+        if isinstance(made.parts.agent, Closable):
+            with contextlib.suppress(Exception):  # code of the user
+                made.parts.agent.close()
+        made.pictures.close()
+        made.parts.env.close()
 
     def _show_state(self, request: EpisodeRequest, phase: str, message: str, **more: object) -> None:
         text = printable(" ".join(message.split()))
@@ -217,7 +222,8 @@ class SharedAgent:
         Raises:
             Interrupted: the episode must end.
         """
-        advised = Action(self._inner.act(observation))
+        where = f"Agent '{type(self._inner).__name__}'"
+        advised = next_action(self._inner, observation, where, self._parts.env.actions)
         choice = None
         while choice is None:
             self._show(observation, advised)
@@ -308,7 +314,8 @@ def choose_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int, setup:
         EpisodeError: there is no such episode, or none can be drawn in a house file.
     """
     if request.options.house is not None and request.record is not None:
-        again = {episode.episode_id: episode for episode in drawn_episodes(env, setup)}
+        drawn = with_replicates(drawn_episodes(env, setup), setup.options.replicates)
+        again = {episode.episode_id: episode for episode in drawn}
         if request.episode_id not in again:
             raise EpisodeError(
                 f"The run has no episode '{request.episode_id}'. It has: {', '.join(list(again)[:5])}, ..."
@@ -316,6 +323,8 @@ def choose_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int, setup:
         return again[request.episode_id]
     if request.options.house is not None:
         return _draw_episode(env, request, turn)
+    if (number := number_of_wish(request.episode_id, request.house)) is not None:
+        return _wished_episode(env, request, number)
     if request.episode_id is not None:
         return env.split.episode(request.episode_id)
     fitting = [
@@ -332,7 +341,7 @@ def choose_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int, setup:
 
 def _wished_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int) -> Episode:
     """Returns a new episode with a goal in words; its start differs from turn to turn and is not at the goal."""
-    rng, episode_id = drawing_generator(request.options.seed, turn), f"{request.house}_wish_{turn:04d}"
+    rng, episode_id = drawing_generator(request.options.seed, turn), f"{request.house}{WISH}{turn:04d}"
     return env.draw_episode(rng, episode_id=episode_id, house=request.house, goal=request.goal)
 
 

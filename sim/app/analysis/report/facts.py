@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
@@ -12,6 +13,7 @@ from sim.app.analysis.report.drawings import Trajectories
 from sim.app.analysis.report.media import picture_of, video_of
 from sim.app.evaluation.parallel import Shard
 from sim.app.evaluation.results import RunRecord, segmentation_of
+from sim.core.errors import ConfigError
 
 NO_DEFAULT = (
     "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
@@ -19,7 +21,8 @@ NO_DEFAULT = (
 )  # fmt: skip
 """Options of `stubborn run` that the command of a run names if they have a value."""
 DEFAULTS: Mapping[str, object] = {
-    "verification": "naive-bayes", "seed": 0, "profile": "fast", "noise": "none", "workers": 1, "replicates": 1,
+    "verification": "naive-bayes", "seed": 0, "profile": "fast", "noise": "none", "motion": "contacts", "workers": 1,
+    "replicates": 1,
 }  # fmt: skip
 """Options of `stubborn run` that the command of a run names if their value differs from this one."""
 FILES = ("record", "video", "mcap", "rerun_save")
@@ -96,7 +99,8 @@ def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
     planned, count, out = run.config.get("episodes"), len(run.results), run.path
     if isinstance(planned, int):
         if shard := run.config.get("shard"):
-            planned, out = len(Shard.parse(str(shard)).select(range(planned))), run.path.parent
+            with contextlib.suppress(ConfigError):  # a shard of version 0.1 was numbered from 0
+                planned, out = len(Shard.parse(str(shard)).select(range(planned))), run.path.parent
         if count < planned:
             yield f"Not finished: {count} of {planned} episodes have ended. The command with --out {out} runs the rest."
     errors = sum(result.is_error for result in run.results.values())

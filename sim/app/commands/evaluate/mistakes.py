@@ -56,8 +56,8 @@ class Args:
 
     run: tyro.conf.Positional[Path]
     """Folder of the run."""
-    out: cli.OutFile
-    """The PNG file."""
+    out: cli.OutPicture
+    """The picture, a .png or .jpg file."""
     cause: str = "false_detection"
     """Cause of the failures to draw (sim/task/failures.py)."""
     count: cli.Count = 10
@@ -102,10 +102,11 @@ def segmenter_of(run: Run) -> NetworkSegmenter | OwnSegmenter:
             or its weights have been deleted or replaced.
     """
     tree, semantics = run.config.get("config", {}), str(run.config.get("semantics"))
+    robot = {name: value for name, value in tree.get("robot", {}).items() if name != "motion"}  # it changes no picture
     if run.config.get("robot"):
         raise ConfigError(f"'{run.path}' was run with another robot; views are rendered for the default one.")
-    for part, ours in (("camera", CameraModel()), ("robot", RobotConfig())):
-        if with_fields(ours, tree.get(part, {})) != ours:
+    for part, ours, used in (("camera", CameraModel(), tree.get("camera", {})), ("robot", RobotConfig(), robot)):
+        if with_fields(ours, used) != ours:
             raise ConfigError(f"'{run.path}' had another {part} than ours; views are drawn with ours.")
     if ":" in semantics:
         settings = run.config.get("settings", {})
@@ -155,9 +156,13 @@ def render_at(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dic
 
 
 def draw(images: dict[str, NDArray], segmenter: NetworkSegmenter | OwnSegmenter, goal: str) -> tuple[Picture, str]:
-    """Returns one row of panels, and a text with the true categories where the segmenter sees the goal."""
+    """Returns one row of panels, and a text with the true categories where the segmenter sees the goal.
+
+    A goal in words or in a picture has no score: the last panel stays white.
+    """
     size = (PANEL_PX, PANEL_PX * images["rgb"].shape[0] // images["rgb"].shape[1])
-    guess, score = segmenter.categories(images), segmenter.scores(images, goal).target
+    guess, scored = segmenter.categories(images), goal in MPCAT40
+    score = segmenter.scores(images, goal).target if scored else np.zeros(images["semantic"].shape, np.float32)
     guess = np.zeros_like(score, np.uint8) if guess is None else guess  # a segmenter of scores alone
     labels = [
         with_legend(np.asarray(cv2.resize(of, size, interpolation=cv2.INTER_NEAREST), np.uint8))
@@ -166,7 +171,8 @@ def draw(images: dict[str, NDArray], segmenter: NetworkSegmenter | OwnSegmenter,
     faint = cv2.resize(255.0 * (1.0 - score), size)
     heat = np.dstack([np.full_like(faint, 255.0), faint, faint]).astype(np.uint8)
     rgb = np.asarray(cv2.resize(images["rgb"], size, interpolation=cv2.INTER_AREA), np.uint8)
-    return np.hstack([rgb, *labels, heat], dtype=np.uint8), in_words(images["semantic"], score)
+    text = in_words(images["semantic"], score) if scored else "a goal in words has no score"
+    return np.hstack([rgb, *labels, heat], dtype=np.uint8), text
 
 
 def in_words(semantic: NDArray[np.uint8], score: NDArray[np.float32]) -> str:

@@ -41,8 +41,8 @@ class Args:
 
     views: Path
     """Folder of shards (`stubborn views`)."""
-    out: cli.OutFile
-    """The PNG file."""
+    out: cli.OutPicture
+    """The picture, a .png or .jpg file."""
     weights: Path | None = None
     """Weights of the network; None: the shipped ones."""
     count: cli.Count = 10
@@ -80,6 +80,9 @@ def main(args: Args) -> int:
         if key not in worst or missed.missed_px > worst[key].missed_px:
             worst[key] = missed
     chosen = sorted(worst.values(), key=lambda missed: -missed.missed_px)[: args.count]
+    if not chosen:
+        print("The network misses no object of these views.")
+        return 0
     for missed in chosen:
         print(f"{missed.view.key}: {missed.category}, {missed.missed_px} px missed, mostly as {missed.taken_for}")
     write_picture(args.out, tile([draw(missed) for missed in chosen], columns=1))

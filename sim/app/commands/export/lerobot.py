@@ -51,6 +51,8 @@ def main(args: Args) -> int:
     run = read_run(args.run)
     ids = exported(run, only_success=args.only_success)
     if not ids:
+        if args.only_success and exported(run, only_success=False):
+            raise ConfigError(f"No recorded episode of '{args.run}' succeeded; leave out --only-success.")
         raise ConfigError(f"'{args.run}' has no recorded episode to export: run it with --record.")
     writer, replayer = DatasetWriter(args.out, args.width_px), Replayer(run)
     try:

@@ -14,6 +14,8 @@ import json
 import subprocess
 import sys
 import time
+import urllib.parse
+import urllib.request
 import venv
 from dataclasses import dataclass
 from pathlib import Path
@@ -84,7 +86,7 @@ def this_project() -> list[str]:
         return [f"{DISTRIBUTION}=={distribution.version}"]
     origin = json.loads(text)
     return (
-        ["--editable", origin["url"].removeprefix("file://")]
+        ["--editable", urllib.request.url2pathname(urllib.parse.urlsplit(origin["url"]).path)]
         if origin.get("dir_info", {}).get("editable")
         else [f"{DISTRIBUTION} @ {origin['url']}"]
     )

@@ -40,14 +40,14 @@ from sim.app.analysis.tables import SIGNIFICANCE, ResultTable, to_csv, to_markdo
 from sim.app.commands.reproduce.paper_claims import judged
 from sim.app.commands.reproduce.paper_figures import beside_paper
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
-from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, key_of, run_in_turns
+from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, key_of, run_in_turns
 from sim.app.composition.setup import RunConfig, resolve
 from sim.app.evaluation.config_fields import differing_fields, field_text
 from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.app.evaluation.results import own_weights
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
-from sim.core.files import write_atomically, write_together
+from sim.core.files import file_name, write_atomically, write_together
 from sim.core.option_types import meanings
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
@@ -246,7 +246,7 @@ def stem_of(args: Args, name: str) -> str:
         agents = f"{len(args.agents)}-agents-{zlib.crc32(agents.encode()):08x}"
     noise = "" if args.noise == Args.noise else args.noise
     split = "" if args.split == Args.split else _split_name(args)
-    return "_".join(filter(None, (name, args.semantics, agents, noise, split, _seed_name(args))))
+    return "_".join(filter(None, (name, file_name(args.semantics or ""), agents, noise, split, _seed_name(args))))
 
 
 def with_cause(of: Run, result: EpisodeResult) -> EpisodeResult:
@@ -315,7 +315,14 @@ def _folder(args: Args, setup: AgentSetup) -> Path:
     variant = setup.variant
     if len(variant) > MAX_NAME:
         variant = f"options-{zlib.crc32(variant.encode()):08x}"
-    parts = (file_name(setup.agent), setup.semantics, args.noise, _split_name(args), _seed_name(args), variant)
+    parts = (
+        file_name(setup.agent),
+        file_name(setup.semantics),
+        args.noise,
+        _split_name(args),
+        _seed_name(args),
+        variant,
+    )
     return args.out / "_".join(filter(None, parts))
 
 

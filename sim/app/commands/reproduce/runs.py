@@ -21,6 +21,7 @@ from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.configuration import parse_assignments
 from sim.core.errors import ConfigError
+from sim.core.files import file_name
 from sim.core.reading import convert
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split
@@ -180,11 +181,6 @@ def runs_in(out: Path, version: str) -> dict[RunKey, Path]:
         if key.version == version and folders.setdefault(key, file.parent) != file.parent:
             raise ConfigError(f"'{folders[key]}' and '{file.parent}' are runs of the same row.")
     return folders
-
-
-def file_name(text: str) -> str:
-    """Returns a text without the characters that separate folders, or modules from names."""
-    return text.replace(":", "_").replace("/", "_")
 
 
 def _options_text(values: Mapping[str, object], settings: Mapping[str, object]) -> str:

@@ -9,11 +9,13 @@ challenge/mine --announced challenge/mine.announced.json --beacon HASH` makes sp
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Literal
 
 from sim.app import cli
 from sim.app.submissions.announcement import FORMAT, Announcement, write_published
+from sim.core.errors import ConfigError
 from sim.core.reading import convert
 
 
@@ -37,6 +39,8 @@ class Args:
 
 def main(args: Args) -> int:
     """Writes the announcement; returns the exit status."""
+    if re.fullmatch(r"[0-9a-f]{40}", args.agent_commit) is None:
+        raise ConfigError(f"--agent-commit must be 40 hexadecimal digits, got '{args.agent_commit}'.")
     folder = args.out.resolve()
     file = folder.with_name(f"{folder.name}.announced.json")
     announcement = convert(

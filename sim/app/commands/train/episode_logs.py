@@ -6,7 +6,6 @@ split, code and detector are the same.
 
 from __future__ import annotations
 
-import functools
 import shlex
 import time
 from collections.abc import Mapping
@@ -21,6 +20,7 @@ from sim.app.evaluation.executors import make_executor
 from sim.app.evaluation.own_code import hash_of_own
 from sim.app.evaluation.results import RunDirectory, read_result_lines
 from sim.app.evaluation.workers import RunnerSpec
+from sim.core.files import file_name
 from sim.core.interface import ConfigError
 from sim.core.paths import assets_dir, code_hash
 from sim.core.reading import read_json
@@ -78,6 +78,10 @@ class LogOptions:
         return f"stubborn train {name} {shlex.join(words)}"
 
 
+JUDGING = ("val", "test", "large-test")
+"""Shipped splits whose houses judge agents: nothing is fitted on them."""
+
+
 def checked_split(args: LogOptions) -> Split:
     """Returns the split of the options.
 
@@ -90,20 +94,21 @@ def checked_split(args: LogOptions) -> Split:
         kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
         raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. Available: {', '.join(kinds)}.")
     split = load_split(args.split)
-    if (name := _shipped_for_judging().get(split.sha256)) is not None:
-        raise ConfigError(f"Nothing is fitted on '{name}', which judges agents; give another --split.")
+    judging = [name for name in JUDGING if _shares_houses(split, load_split(assets_dir() / name))]
+    if judging:
+        raise ConfigError(f"Nothing is fitted on houses of '{judging[0]}', which judges agents; give another --split.")
     return split
 
 
-@functools.cache
-def _shipped_for_judging() -> dict[str, str]:
-    """Returns the names of the shipped splits on which nothing is fitted, by checksum."""
-    return {load_split(assets_dir() / name).sha256: name for name in ("val", "test")}
+def _shares_houses(split: Split, shipped: Split) -> bool:
+    """Returns whether a split is a shipped one or a copy of it, or uses its house files."""
+    files = {file.resolve() for file in shipped.house_paths.values()}
+    return split.sha256 == shipped.sha256 or any(file.resolve() in files for file in split.house_paths.values())
 
 
 def default_log(command: str, args: LogOptions, split: Split) -> Path:
     """Returns the folder of the log if --log is not given."""
-    return Path("runs") / f"{command}-{args.semantics.replace(':', '.')}-{split.name}"
+    return Path("runs") / f"{command}-{file_name(args.semantics)}-{split.name}"
 
 
 def lines_of(

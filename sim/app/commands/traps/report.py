@@ -31,7 +31,7 @@ from sim.app.composition.agents import build_agent, find_agent
 from sim.app.composition.record import code_of
 from sim.app.evaluation.config_fields import differing_fields, field_text
 from sim.app.options import RunOptions
-from sim.core.files import csv_text, open_to_grow, write_atomically, write_together
+from sim.core.files import csv_text, file_name, open_to_grow, write_atomically, write_together
 from sim.core.files import write_picture as save_picture
 from sim.core.interface import Agent, ConfigError
 from sim.core.reading import convert, read_json, read_lines
@@ -148,8 +148,7 @@ def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str
 def write_picture(folder: Path, env: ObjectNavEnv, agent: Agent, trial: Trial) -> None:
     """Writes the picture of a trial."""
     belief = map_painter.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
-    agent_name = trial.agent.replace(":", "-")  # of package.module:NAME; Windows cannot store a colon
-    path = folder / f"{trial.episode_id}_{agent_name}.png"
+    path = folder / f"{trial.episode_id}_{file_name(trial.agent)}.png"
     save_picture(path, draw_trial(env, trial, belief))
 
 

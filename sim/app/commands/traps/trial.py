@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import msgspec
 import numpy as np
 
-from sim.core.interface import Action, Agent
+from sim.app.evaluation.rollout import ask, next_action
+from sim.core.interface import Agent
 from sim.core.reading import Count, Name, Number
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -116,12 +117,14 @@ def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode) -> T
     """Runs one episode of a trap to its end.
 
     Raises:
+        AgentError: the agent failed.
         PhysicsError: the robot fell or tipped over, or the simulation diverged.
     """
     trial = Trial(episode.house, episode.episode_id, name)
     seed = episode_seeds(0, episode.episode_id).environment
     observation, _ = env.reset(seed=seed, options={"episode": episode})
-    agent.reset(episode.goal, seed)
+    where = f"Agent '{name}' in house '{episode.house}'"
+    ask(f"{where}, reset", lambda: agent.reset(episode.goal, seed))
     zone = env.split.sidecar(episode.house).zone_m
     world = env.scene.world
     deepest = DeepestContact(hull_of(world))
@@ -131,7 +134,7 @@ def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode) -> T
         while not done:
             _record_pose(trial, env)
             trial.steps_in_trap += zone is not None and _inside(zone, trial.positions_m[-1])
-            observation, _, terminated, truncated, _ = env.step(Action(agent.act(observation)))
+            observation, _, terminated, truncated, _ = env.step(next_action(agent, observation, where, env.actions))
             assert env.motion is not None
             trial.motions.append(env.motion)
             done = terminated or truncated

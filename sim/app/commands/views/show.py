@@ -36,8 +36,8 @@ class Args:
 
     views: Path
     """Folder of shards."""
-    out: cli.OutFile
-    """The PNG file."""
+    out: cli.OutPicture
+    """The picture, a .png or .jpg file."""
     count: cli.Count = 12
     """Number of views."""
     seed: cli.Seed = 0

@@ -371,6 +371,7 @@ function follow(request) {
   for (const name of ["agent", "semantics", "explorer"]) $(name).value = request[name];
   $("episode").value = request.episode_id ?? "";
   chosenAgent();
+  showHouse();
 }
 
 // Only stubborn-plus tests colours, rooms and places; the first wish chooses it in place of the default agent.

@@ -183,7 +183,7 @@ def test_only_successes_are_exported_where_that_is_asked_for(folder: Path, tmp_p
     ids = lerobot.exported(read_run(folder / "noisy"), only_success=True)
     assert len(ids) < 2  # the random agent
     if not ids:
-        with pytest.raises(ConfigError, match="no recorded episode"):
+        with pytest.raises(ConfigError, match="succeeded; leave out --only-success"):
             export(folder, "noisy", tmp_path, only_success=True)
 
 

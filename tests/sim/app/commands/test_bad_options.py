@@ -49,7 +49,9 @@ def required(args_type: type) -> list[str]:
     for field in dataclasses.fields(args_type):
         if field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
             positional = any("Positional" in str(mark) for mark in cli._marks(hints[field.name]))
-            words += ["x"] if positional else [f"--{field.name.replace('_', '-')}", "x"]
+            is_picture = any(getattr(mark, "picture", False) for mark in cli._marks(hints[field.name]))
+            value = "x.png" if is_picture else "x"
+            words += [value] if positional else [f"--{field.name.replace('_', '-')}", value]
     return words
 
 
@@ -66,6 +68,8 @@ def bad_values(args_type: type) -> Iterator[tuple[str, Any]]:
             yield name, (value,) if several else value
         if any(isinstance(mark, cli.Written) for mark in marks):
             yield from ((name, Path(text)) for text in ("/dev/null/x", "n" * 300))
+        if any(getattr(mark, "picture", False) for mark in marks):
+            yield from ((name, Path(text)) for text in ("sheet", "sheet.txt"))
 
 
 def refusal(
@@ -164,7 +168,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--furniture nowhere --out OUT", "is not a folder"),
     ],
     "sim.app.commands.train.fusion": [
-        ("--split val --out OUT", "fitted on 'val'"),
+        ("--split val --out OUT", "fitted on houses of 'val'"),
         ("--split OUT --semantics gt --out OUT", "makes no errors to learn"),
         ("--split nowhere --out OUT", "nowhere"),
         ("--split train --out OUT --minutes 0 --log OUT", "has no tracks"),
@@ -172,7 +176,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "sim.app.commands.train.verifier": [
         ("--semantics gt --out OUT", "makes no errors to learn"),
         ("--split nowhere --out OUT", "Unknown split"),
-        ("--split val --out OUT", "fitted on 'val'"),
+        ("--split val --out OUT", "fitted on houses of 'val'"),
     ],
     "sim.app.commands.traps.make": [
         ("--out OUT --family glass", "pane_gap"),

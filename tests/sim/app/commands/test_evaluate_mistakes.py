@@ -136,6 +136,21 @@ def test_a_run_of_another_camera_or_network_is_not_drawn_with_this_one(
         show_mistakes.segmenter_of(replace(run_of, config={**run_of.config, **changes}))
 
 
+def test_another_motion_changes_no_picture_and_a_goal_in_words_has_no_score(recorded: Path) -> None:
+    run_of = read_run(recorded / "run")
+    tree = run_of.config.get("config", {})
+    sliding = {**tree, "robot": {**tree.get("robot", {}), "motion": "sliding"}}
+    segmenter = show_mistakes.segmenter_of(replace(run_of, config={**run_of.config, "config": sliding}))
+    images = {
+        "rgb": np.zeros((480, 640, 3), np.uint8),
+        "depth": np.ones((480, 640), np.float32),
+        "semantic": np.ones((480, 640), np.uint8),
+    }
+    panels, text = show_mistakes.draw(images, segmenter, "nightstand")
+    assert text == "a goal in words has no score"
+    assert (panels[:, -show_mistakes.PANEL_PX :] == 255).all()
+
+
 def test_a_run_with_a_segmentation_of_ones_own_is_drawn_with_it(
     recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -61,3 +61,15 @@ def test_the_sheet_has_the_worst_object_of_each_house(
     drawn = cv2.imread(str(sheet))
     assert drawn is not None
     assert drawn.shape[0] == 2 * 300
+
+
+def test_nothing_is_drawn_where_nothing_is_missed(
+    tmp_path: Path, always_wall: RedNet, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sim.app.commands.evaluate.objects.missed_objects", lambda *_: iter(()))
+    write_views(tmp_path / "views", 1)
+    save_network(tmp_path / "wall.safetensors", always_wall, {"block_px": 1})
+    sheet = tmp_path / "worst.png"
+    assert main(Args(views=tmp_path / "views", weights=tmp_path / "wall.safetensors", out=sheet, threads=1)) == 0
+    assert capsys.readouterr().out == "The network misses no object of these views.\n"
+    assert not sheet.exists()

@@ -179,11 +179,11 @@ def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(seats: Path, tmp_
 
 
 def test_nothing_is_fitted_on_val_and_test():
-    for split in ("val", "test"):
-        with pytest.raises(ConfigError, match=f"fitted on '{split}', which judges"):
-            train_verifier.main(train_verifier.Args(split=split, out=Path("x.json")))
-        with pytest.raises(ConfigError, match=f"fitted on '{split}', which judges"):
-            train_verifier.main(train_verifier.Args(split=str(assets_dir() / split), out=Path("x.json")))
+    """Nor on other splits with their houses."""
+    for split, houses in (("val", "val"), ("test", "test"), ("words-seen", "val"), ("large-test", "large-test")):
+        for named in (split, str(assets_dir() / split)):
+            with pytest.raises(ConfigError, match=f"fitted on houses of '{houses}', which judges"):
+                train_verifier.main(train_verifier.Args(split=named, out=Path("x.json")))
 
 
 def test_segmentation_that_needs_no_verification_is_refused():

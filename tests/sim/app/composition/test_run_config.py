@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from sim.app import cli
-from sim.app.analysis.report.facts import command_of
+from sim.app.analysis.report.facts import DEFAULTS, FILES, NO_DEFAULT, command_of
 from sim.app.commands.run import entry
 from sim.app.composition.record import error_result, record_of
 from sim.app.composition.setup import resolve
@@ -18,6 +18,7 @@ from sim.app.options import RunOptions
 from sim.core.configuration import as_json, field_paths, with_fields
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
+from sim.core.option_types import meanings
 from sim.episodes.episode import Episode
 from stubborn import detection, exploration
 from stubborn.detection.verification import FittedVerifier
@@ -160,6 +161,13 @@ def test_the_command_that_a_report_prints_repeats_the_settings(tmp_path: Path) -
     parsed = cli.parse(RunOptions, shlex.split(command)[2:])
     assert resolve(parsed).config == resolve(options).config
     assert (parsed.seed, parsed.explorer, parsed.semantics) == (3, "frontier", "gt")
+
+
+def test_the_command_that_a_report_prints_can_have_every_option_that_is_recorded() -> None:
+    recorded = {name for name, option in meanings(RunOptions).items() if option.recorded}
+    without_effect = {"only", "executor", "address", "out", "view", "rerun"}
+    assert {*NO_DEFAULT, *DEFAULTS, *FILES} == recorded - without_effect
+    assert {name: getattr(RunOptions(), name) for name in DEFAULTS} == dict(DEFAULTS)
 
 
 def test_the_command_that_a_report_prints_names_the_chosen_episodes() -> None:

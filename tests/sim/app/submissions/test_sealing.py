@@ -174,7 +174,11 @@ def announced(tmp_path: Path, **changes: Any) -> Path:
 
 @pytest.mark.parametrize(
     ("change", "part"),
-    [({"agent_commit": "HEAD"}, "agent_commit"), ({"beacon": "soon"}, "beacon"), ({"beacon_by": "me"}, "beacon_by")],
+    [
+        ({"agent_commit": "HEAD"}, "--agent-commit must be 40 hexadecimal digits.*'HEAD'"),
+        ({"beacon": "soon"}, "beacon"),
+        ({"beacon_by": "me"}, "beacon_by"),
+    ],
 )
 def test_an_announcement_without_a_commit_or_a_rule_is_refused(
     tmp_path: Path, change: dict[str, Any], part: str

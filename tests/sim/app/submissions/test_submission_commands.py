@@ -90,7 +90,7 @@ def small_rows(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Allows rows of three episodes with small images, in an empty leaderboard with an empty cache."""
     monkeypatch.setattr("sim.app.submissions.setting.Setting.changes", lambda setting: [])
     monkeypatch.setattr("sim.app.submissions.leaderboard.MIN_EPISODES", 3)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("STUBBORN_CACHE_DIR", str(tmp_path / "cache"))
     (tmp_path / "submissions").mkdir()
 
 

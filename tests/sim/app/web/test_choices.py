@@ -6,6 +6,7 @@ import base64
 import json
 import math
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any, cast
 
@@ -14,6 +15,8 @@ import numpy as np
 import pytest
 
 from sim.app.commands import run as sim_run
+from sim.app.composition.runner import build_parts
+from sim.app.composition.setup import resolve
 from sim.app.evaluation.results import RunRecord, read_record, read_results
 from sim.app.options import RunOptions
 from sim.app.web.choices import Choices, Offer
@@ -105,6 +108,20 @@ def test_the_id_of_an_episode_says_its_house_and_goal(choices: Choices) -> None:
     assert (request.episode_id, request.house != "wedged_spawn") == ("val_0018", True)
     with pytest.raises(ConfigError, match=r"'val'.*'val_9999'"):
         choices.request(START | {"split": "val", "episode": "val_9999"})
+
+
+def test_replicates_and_episodes_that_the_page_drew_can_be_watched_again(choices: Choices) -> None:
+    record: RunRecord = {"agent": "oracle", "semantics": "gt", "split": "traps", "seed": 3}
+    first = choices.as_json()["splits"]["traps"]["wedged_spawn"]["bed"][0]  # type: ignore[index]
+    line = a_result(episode_id=f"{first}~1", house="wedged_spawn", goal="bed")
+    assert choices.again(record, line, "agent").episode_id == f"{first}~1"
+    drawn = choices.request(WISH)
+    setup = resolve(drawn.options)
+    with closing(build_parts(setup, watched=True).env) as env:
+        before = choose_episode(env, drawn, 2, setup)
+        line = a_result(episode_id=before.episode_id, house=before.house, goal=before.goal)
+        again = choices.again({**record, "seed": drawn.options.seed, "agent": "stubborn-plus"}, line, "person")
+        assert choose_episode(env, again, 0, setup) == before
 
 
 @pytest.mark.parametrize(

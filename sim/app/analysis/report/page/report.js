@@ -6,7 +6,7 @@
   const body = table.tBodies[0];
   const rows = [...body.rows];
   const filters = document.getElementById("filters");
-  const ACTIONS = ["STOP", "forward", "turn left", "turn right"];
+  const ACTIONS = ["STOP", "forward", "turn left", "turn right", "look up", "look down"];
   const PIECES = 14;
   let sorted = { column: -1, down: false };
 
