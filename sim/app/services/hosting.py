@@ -15,7 +15,7 @@ def require_web() -> None:
     """Raises ConfigError if the packages of the extra `web` are not installed."""
     missing = [name for name in ("starlette", "uvicorn", "websockets") if importlib.util.find_spec(name) is None]
     if missing:
-        raise ConfigError(f"{invocation.program()} needs {', '.join(missing)}: pip install -e '.[web]'.")
+        raise ConfigError(f"{invocation.program()} needs {', '.join(missing)}: pip install 'stubborn-objectnav[web]'.")
 
 
 def listen(host: str, port: int) -> socket.socket:
