@@ -202,7 +202,7 @@ class SuccessRule:
 
 
 Observation = Mapping[str, NDArray]
-"""The observation of one step: those of `SENSORS`, `ROBOT_SENSORS` and `GOAL_SENSORS` that were requested, plus
+"""The observation of one step: those of `SENSORS`, `ROBOT_SENSORS`, `GOAL_SENSORS` and `SEMANTIC_MAP` that were requested, plus
 `POSE_SENSORS`.
 
 | key | shape | dtype | meaning |
@@ -212,11 +212,13 @@ Observation = Mapping[str, NDArray]
 | semantic | (h, w) | uint8 | mpcat40 id |
 | gps | (2,) | float32 | metres forward and left of the start pose |
 | compass | (1,) | float32 | yaw against the start heading, in (-pi, pi] |
-| objectgoal | (1,) | int64 | index into `GOAL_CATEGORIES`; -1: the goal is in words |
+| objectgoal | (1,) | int64 | index into `GOAL_CATEGORIES`; -1: it is in words or a picture |
 | scan | (rays,) | float32 | lidar, metres; 0: nearer than its range, the maximum range: no return in it |
 | bumper | (6,) | int8 | 1: contact in the last action; sector 0 is ahead, the others follow counter-clockwise |
 | odometry | (3,) | float32 | pose by wheels and gyro: metres forward and left of the start, yaw in (-pi, pi] |
 | imu | (6,) | float32 | accelerations, m/s2, and turn rates, rad/s, in the robot's frame |
+| tilt | (1,) | float32 | tilt of the camera, radians, positive: up |
+| semantic_map | (cells, cells) | uint8 | true mpcat40 ids around the robot, seen from above; 0: nothing |
 | goal | str | | the goal as text (`sim.core.goals.GoalSpec.told`); "": it is a picture |
 | goal_picture | (512, 512, 3) | uint8 | the picture of a goal of the kind `picture`, else 0 |
 """

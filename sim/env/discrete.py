@@ -227,7 +227,7 @@ def stopping_velocity(remaining: float, velocity: float, acceleration: float, pe
     v the command, it covers v T + (v0 - v) |v0 - v| / 2a in the period T and v^2 / 2a after it.
 
     Args:
-        left: distance (m) or angle (rad) to the goal; its sign is the direction.
+        remaining: distance (m) or angle (rad) to the goal; its sign is the direction.
         velocity: present velocity; that away from the goal counts as 0.
         acceleration: limit of the base, > 0.
         period_s: time for which the command is held.

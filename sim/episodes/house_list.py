@@ -153,7 +153,7 @@ def house_maker() -> HouseMaker:
         return point.load()
     raise HouseError(
         f"No installed package makes houses (entry point '{MAKER_GROUP}'): install this project with "
-        "`python -m pip install -e .`."
+        "`pip install stubborn-objectnav`, or `pip install -e .` in a clone."
     )
 
 

@@ -131,7 +131,7 @@ class ObjectGoalSensor:
         return spaces.Box(-1, len(GOAL_CATEGORIES) - 1, (1,), np.int64)
 
     def read(self, context: SensorContext) -> NDArray:
-        """Returns the index of the goal in `GOAL_CATEGORIES`; -1: the goal is in words."""
+        """Returns the index of the goal in `GOAL_CATEGORIES`; -1: the goal is in words or a picture."""
         known = context.goal in GOAL_CATEGORIES
         return np.array([GOAL_CATEGORIES.index(context.goal) if known else -1], np.int64)
 

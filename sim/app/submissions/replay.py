@@ -28,7 +28,7 @@ from sim.task.result import EpisodeMetrics
 from sim.world.world import World
 
 Look = Callable[[], dict[str, NDArray]]
-"""Returns the true segmentation (h, w) at the robot's current pose."""
+"""Returns the true images at the robot's current pose, by name."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,1 +1,1 @@
-"""Commands that read models from elsewhere: furniture that the user has installed."""
+"""Commands that read models from elsewhere: furniture and houses."""
