@@ -202,8 +202,8 @@ class SuccessRule:
 
 
 Observation = Mapping[str, NDArray]
-"""The observation of one step: those of `SENSORS`, `ROBOT_SENSORS`, `GOAL_SENSORS` and `SEMANTIC_MAP` that were requested, plus
-`POSE_SENSORS`.
+"""The observation of one step: `POSE_SENSORS`, and those of `SENSORS`, `ROBOT_SENSORS`, `GOAL_SENSORS` and `SEMANTIC_MAP`
+that were requested.
 
 | key | shape | dtype | meaning |
 |---|---|---|---|
