@@ -202,8 +202,8 @@ class SuccessRule:
 
 
 Observation = Mapping[str, NDArray]
-"""The observation of one step: `POSE_SENSORS`, and those of `SENSORS`, `ROBOT_SENSORS`, `GOAL_SENSORS` and `SEMANTIC_MAP`
-that were requested.
+"""The observation of one step: `POSE_SENSORS`, and what was requested of `SENSORS`, `ROBOT_SENSORS`, `GOAL_SENSORS` and
+`SEMANTIC_MAP`.
 
 | key | shape | dtype | meaning |
 |---|---|---|---|
