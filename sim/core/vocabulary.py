@@ -43,8 +43,6 @@ class Found(NamedTuple):
     """The words of the phrase that mean it."""
     before: tuple[str, ...]
     """The words before them."""
-    relation: str
-    """`name`, `category`, `synonym`, `kind`, `general` or `phrase`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +52,7 @@ class Vocabulary:
     categories: Mapping[str, tuple[str, ...]]
     """The mpcat40 categories of each name."""
     words: Mapping[str, tuple[str, frozenset[str]]]
-    """For each word its relation and what it means: names."""
+    """For each word its relation (`name`, `category`, `synonym`, `kind`, `general`, `phrase` or `other`) and names."""
 
     def find(self, phrase: str) -> Found | None:
         """Returns what a phrase means by its longest last part that is a word: "wooden kitchen chair" is a chair.
@@ -66,7 +64,7 @@ class Vocabulary:
             word = self.listed(" ".join(words[first:]))
             if word is not None:
                 relation, names = self.words[word]
-                return None if relation == "other" else Found(names, word, tuple(words[:first]), relation)
+                return None if relation == "other" else Found(names, word, tuple(words[:first]))
         return None
 
     def listed(self, word: str) -> str | None:

@@ -30,7 +30,6 @@ class Standing:
     category: str
     low: NDArray[np.float64]  # (3,) metres
     high: NDArray[np.float64]  # (3,) metres
-    at: NDArray[np.float64]  # (2,) origin of its body, metres
     front: NDArray[np.float64]  # (2,) unit vector: the heading of its body
 
     @property
@@ -66,7 +65,6 @@ def read_standing(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) ->
                 instance.category,
                 low[ids].min(axis=0),
                 high[ids].max(axis=0),
-                data.xpos[body][:2].copy(),
                 x_axis / max(float(np.linalg.norm(x_axis)), 1e-9),
             )
         )

@@ -90,7 +90,6 @@ class Semantics(Struct):
 
     classes: list[_Class] = []
     region_annotations: Annotated[list[Region], Meta(max_length=10_000)] = []
-    semantic_descriptor_filename: str = ""
 
 
 class _Section(Struct):

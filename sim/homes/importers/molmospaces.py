@@ -48,7 +48,6 @@ _WALL_BODY = re.compile(r"wall_[\d_]+")
 
 class _Object(Struct):
     category: Name
-    room_id: int | str | None = None
 
 
 class _Metadata(Struct):

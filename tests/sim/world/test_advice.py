@@ -27,12 +27,12 @@ def piece(
     """Returns an item with a middle in plan and a size along x, y and z; its category is that of its label."""
     middle, half = np.array(middle_m), 0.5 * np.array(size_m)
     low = np.array([*(middle - half[:2]), z_m])
-    return Standing(label, name, label[:-3], low, low + size_m, middle, np.array(front))
+    return Standing(label, name, label[:-3], low, low + size_m, np.array(front))
 
 
 def moved(item: Standing, dx_m: float, dy_m: float) -> Standing:
     step = np.array([dx_m, dy_m, 0.0])
-    return replace(item, low=item.low + step, high=item.high + step, at=item.at + step[:2])
+    return replace(item, low=item.low + step, high=item.high + step)
 
 
 def told(kind: str, *pieces: Standing) -> list[str]:
