@@ -161,17 +161,17 @@ def read_text(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErro
     return text.replace("\r\n", "\n")
 
 
-def read_csv(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> list[dict[str, str]]:
+def read_csv(file: Path, *, what: str) -> list[dict[str, str]]:
     """Returns the rows of a CSV file by the names of its columns; the missing fields of a short row are "".
 
     Raises:
-        ObjectNavError: of class `error`; the file cannot be read or is not a table.
+        ConfigError: the file cannot be read or is not a table.
     """
     try:
-        table = csv.DictReader(read_text(file, what=what, error=error).splitlines(), restval="", restkey="")
+        table = csv.DictReader(read_text(file, what=what).splitlines(), restval="", restkey="")
         return [{key: value for key, value in row.items() if key} for row in table]
     except csv.Error as fault:
-        raise error(f"{what} '{file}' is not a table: {reason_of(fault)}.") from None
+        raise ConfigError(f"{what} '{file}' is not a table: {reason_of(fault)}.") from None
 
 
 def sha256_of(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> str:
@@ -228,23 +228,20 @@ def read_json(file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectN
     return parse_json(read_bytes(file, what=what, error=error), kind, where=f"{what} '{file}'", error=error)
 
 
-def read_gzip_json(
-    file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectNavError] = ConfigError, strict: bool = True
-) -> T:
+def read_gzip_json(file: Path, kind: type[T] | Any, *, what: str, strict: bool = True) -> T:
     """Returns the content of a gzipped JSON file as the declared type; `strict` is that of `parse_json`.
 
     Raises:
-        ObjectNavError: of class `error`; the file cannot be read, expands to more than `MAX_BYTES`, or has other
-            content.
+        ConfigError: the file cannot be read, expands to more than `MAX_BYTES`, or has other content.
     """
-    with open_plain(file, what=what, error=error) as packed:
+    with open_plain(file, what=what) as packed:
         try:
             content = gzip.GzipFile(fileobj=packed).read(MAX_BYTES + 1)
         except (OSError, EOFError, zlib.error, struct.error, ValueError) as fault:
-            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+            raise ConfigError(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
     if len(content) > MAX_BYTES:
-        raise error(f"{what} '{file}' expands to more than {MAX_BYTES >> 20} MB.")
-    return parse_json(content, kind, where=f"{what} '{file}'", error=error, strict=strict)
+        raise ConfigError(f"{what} '{file}' expands to more than {MAX_BYTES >> 20} MB.")
+    return parse_json(content, kind, where=f"{what} '{file}'", strict=strict)
 
 
 def read_lines(file: Path, kind: type[T], *, what: str, older: str = "") -> Lines[T]:

@@ -219,7 +219,7 @@ def _distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.flo
     return np.hypot(a[:, None, 0] - b[None, :, 0], a[:, None, 1] - b[None, :, 1])
 
 
-def _chunks(indices: NDArray[np.int64], size: int = 2048) -> Iterator[NDArray[np.int64]]:
+def _chunks(indices: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
     """Yields the indices in pieces, so that tables of all pairs stay in the processor's cache."""
-    for start in range(0, len(indices), size):
-        yield indices[start : start + size]
+    for start in range(0, len(indices), 2048):
+        yield indices[start : start + 2048]

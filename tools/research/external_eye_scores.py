@@ -113,19 +113,18 @@ def match(
     return found, right
 
 
-def share_with_interval(hits: Mapping[str, int], of: Mapping[str, int], seed: int = 0) -> tuple[float, float, float]:
+def share_with_interval(hits: Mapping[str, int], of: Mapping[str, int]) -> tuple[float, float, float]:
     """Returns a share over all houses and its 95 % interval, from a bootstrap over houses; nan where nothing counts.
 
     Args:
         hits: number of hits by house.
         of: number of trials by house.
-        seed: seed of the bootstrap.
     """
     houses = sorted(of)
     counts = np.array([(hits.get(house, 0), of[house]) for house in houses], np.float64).reshape(-1, 2)
     if counts[:, 1].sum() == 0:
         return float("nan"), float("nan"), float("nan")
-    drawn = np.random.default_rng(seed).integers(len(counts), size=(RESAMPLES, len(counts)))
+    drawn = np.random.default_rng(0).integers(len(counts), size=(RESAMPLES, len(counts)))
     with np.errstate(invalid="ignore"):  # a resample without a trial
         hit, trials = counts[drawn].sum(axis=1).T
         low, high = np.nanpercentile(hit / trials, (2.5, 97.5))
@@ -133,11 +132,11 @@ def share_with_interval(hits: Mapping[str, int], of: Mapping[str, int], seed: in
 
 
 def paired_difference(
-    before: Mapping[str, int], after: Mapping[str, int], of: Mapping[str, int], seed: int = 0
+    before: Mapping[str, int], after: Mapping[str, int], of: Mapping[str, int]
 ) -> tuple[float, float, float]:
     """Returns the difference of two shares of the same trials and its 95 % interval, from a bootstrap over houses."""
     difference = {house: after.get(house, 0) - before.get(house, 0) for house in of}
-    return share_with_interval(difference, of, seed)
+    return share_with_interval(difference, of)
 
 
 def _area(box: Box) -> float:

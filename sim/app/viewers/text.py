@@ -45,12 +45,12 @@ def write(
     cv2.putText(picture, words, left_base, colour, _font(), size_px, weight)
 
 
-def wrapped(words: str, width_px: int, size_px: int, weight: int = NORMAL) -> list[str]:
+def wrapped(words: str, width_px: int, size_px: int) -> list[str]:
     """Returns lines that are at most `width_px` wide, broken between words."""
     lines: list[str] = []
     for word in words.split():
         longer = f"{lines[-1]} {word}" if lines else word
-        if lines and text_width(longer, size_px, weight) <= width_px:
+        if lines and text_width(longer, size_px) <= width_px:
             lines[-1] = longer
         else:
             lines.append(word)

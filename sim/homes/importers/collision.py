@@ -34,17 +34,14 @@ CONCAVITY_M = 0.03
 MAX_PARTS = 64
 
 
-def collision_boxes(
-    corners_m: NDArray[np.float64], *, cell_m: float = CELL_M, is_filled: bool = False
-) -> NDArray[np.float64]:
+def collision_boxes(corners_m: NDArray[np.float64], *, is_filled: bool = False) -> NDArray[np.float64]:
     """Returns boxes (n, 6), lowest corner and then highest, that contain all triangles.
 
     Args:
         corners_m: the triangles (m, 3, 3).
-        cell_m: edge of a cell.
         is_filled: the inside of closed outlines of each level is filled too, so that no free place remains there.
     """
-    size_m = np.ptp(corners_m.reshape(-1, 3), axis=0)
+    size_m, cell_m = np.ptp(corners_m.reshape(-1, 3), axis=0), CELL_M
     while np.prod(size_m / cell_m + 2.0) > MAX_CELLS:
         cell_m *= 1.5
     cell_m = 2.0 * spacing_within(corners_m, 0.5 * cell_m, MAX_POINTS)

@@ -57,9 +57,9 @@ def write_scene(out: Path, scene: Scene, *, pack: bool) -> None:
         raise HouseError(f"House '{scene.report['source']}': {error}") from None
 
 
-def floor_height(model: mujoco.MjModel, name: str = "floor") -> float:
-    """Returns the height of the floor that collides, a plane or a box with a name; 0 without one, or within 1 mm."""
-    geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name)
+def floor_height(model: mujoco.MjModel) -> float:
+    """Returns the height of the floor that collides, a plane or a box named "floor"; 0 without one, or within 1 mm."""
+    geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, "floor")
     if geom < 0:
         return 0.0
     data = data_at_rest(model)

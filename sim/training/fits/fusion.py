@@ -83,12 +83,11 @@ def samples_of(log: Sequence[Mapping[str, Any]]) -> list[Sample]:
     return result
 
 
-def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, steps: int = 300) -> Fusion:
+def fit(samples: Sequence[Sample], *, steps: int = 300) -> Fusion:
     """Returns the parameters of highest posterior probability.
 
     Args:
         samples: see `samples_of`.
-        sectors: directions of `EvidenceConfig`; a view's number divided by it is its range of distance.
         steps: number of steps of Adam.
 
     Raises:
@@ -96,7 +95,7 @@ def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, ste
     """
     if len(samples) < 100:
         raise ConfigError(f"The log holds {len(samples)} samples of tracks; 100 are needed: run more episodes.")
-    data = _Data.of(samples, sectors)
+    data = _Data.of(samples)
     names = [name for name in MPCAT40[1:] if name not in SURFACES]
     free = {
         "rings": torch.zeros(4),
@@ -140,7 +139,7 @@ class _Data:
     """(n,) number of the true object; the last number means no object."""
 
     @classmethod
-    def of(cls, samples: Sequence[Sample], sectors: int) -> _Data:
+    def of(cls, samples: Sequence[Sample]) -> _Data:
         rings, kinds = len(EvidenceConfig().rings_m) + 1, int((~IS_SURFACE).sum())
         objects = np.zeros((len(samples), rings, kinds), np.float32)
         behind, weight = (np.zeros((len(samples), rings), np.float32) for _ in range(2))
@@ -149,7 +148,7 @@ class _Data:
         for i, sample in enumerate(samples):
             inside, surface = sample.mean[:, ~IS_SURFACE], sample.mean[:, IS_SURFACE].sum(axis=1)
             of_objects = inside.sum(axis=1)
-            ring = sample.view // sectors
+            ring = sample.view // EvidenceConfig.sectors
             np.add.at(objects[i], ring, (sample.weight / np.maximum(of_objects, 1e-3))[:, None] * inside)
             np.add.at(behind[i], ring, sample.weight * surface / np.maximum(surface + of_objects, 1e-6))
             np.add.at(weight[i], ring, sample.weight)
@@ -171,11 +170,9 @@ class _Data:
         return torch.cat([z, none], dim=1)
 
 
-def probabilities(
-    fusion: Fusion, samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors
-) -> Float32[np.ndarray, "n classes"]:
+def probabilities(fusion: Fusion, samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
     """Returns the probability of each category of `MPCAT40[1:]`, for each sample."""
-    rings = np.array(fusion.ring_weights, np.float32)
+    rings, sectors = np.array(fusion.ring_weights, np.float32), EvidenceConfig.sectors
     return np.concatenate(
         [
             fusion.probabilities(sample.mean[None], (sample.weight * rings[sample.view // sectors])[None])

@@ -128,7 +128,7 @@ def decode_member(name: str, content: bytes) -> Any:
     if parts[-1] not in ("png", "jpg"):
         return None
     in_colour = {"rgb", "normals"} & set(parts[:-1])
-    image = _read_image(content, cv2.IMREAD_COLOR if in_colour else cv2.IMREAD_UNCHANGED, f"Member '{name}'")
+    image = decode_picture(content, cv2.IMREAD_COLOR if in_colour else cv2.IMREAD_UNCHANGED, where=f"Member '{name}'")
     return cv2.cvtColor(image, cv2.COLOR_BGR2RGB) if in_colour else image
 
 
@@ -412,12 +412,7 @@ def _with_extras(file: Path, view: LabelledView, parts: dict[str, bytes]) -> Lab
 
 
 def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) -> Shaped[np.ndarray, "h w *channels"]:
-    return _read_image(parts[part], flag, f"Shard '{file}': the {part} image of view '{key}'")
-
-
-def _read_image(content: bytes, flag: int, where: str) -> Shaped[np.ndarray, "h w *channels"]:
-    """Returns an image; raises ConfigError if it is too large or cannot be read."""
-    return decode_picture(content, flag, where=where)
+    return decode_picture(parts[part], flag, where=f"Shard '{file}': the {part} image of view '{key}'")
 
 
 def tile(pictures: Sequence[UInt8[np.ndarray, "h w 3"]], columns: int) -> UInt8[np.ndarray, "rows cols 3"]:

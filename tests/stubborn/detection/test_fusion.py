@@ -158,7 +158,7 @@ def test_the_fit_maximises_the_likelihood_that_the_agent_computes():
         "surface": torch.tensor(fusion.surface),
         "offsets": torch.tensor([fusion.offsets[name] for name in MPCAT40[1:] if name not in SURFACES]),
     }
-    p = torch.softmax(_Data.of(samples, 12).log_odds({k: v.float() for k, v in free.items()}), dim=1).numpy()
+    p = torch.softmax(_Data.of(samples).log_odds({k: v.float() for k, v in free.items()}), dim=1).numpy()
     np.testing.assert_allclose(p[:, :-1], probabilities(fusion, samples)[:, ~IS_SURFACE], atol=2e-4)
 
 

@@ -67,12 +67,11 @@ class Sheet:
         return np.stack([xy[:, 0], self.size_px[1] - xy[:, 1]], axis=1).round().astype(np.int32)
 
 
-def sheet_around(positions_m: NDArray[np.floating], margin_m: float = 1.0) -> Sheet:
-    """Returns a sheet for positions (n, 2) in a house that cannot be loaded."""
-    low, high = positions_m.min(axis=0) - margin_m, positions_m.max(axis=0) + margin_m
-    cell = CELL_M
-    cols, rows = np.ceil((high - low) / cell).astype(int).tolist()
-    return Sheet(GridFrame(origin_xy_m=(float(low[0]), float(low[1])), shape=(rows, cols), cell_m=cell))
+def sheet_around(positions_m: NDArray[np.floating]) -> Sheet:
+    """Returns a sheet for positions (n, 2) in a house that cannot be loaded, with a margin of 1 m."""
+    low, high = positions_m.min(axis=0) - 1.0, positions_m.max(axis=0) + 1.0
+    cols, rows = np.ceil((high - low) / CELL_M).astype(int).tolist()
+    return Sheet(GridFrame(origin_xy_m=(float(low[0]), float(low[1])), shape=(rows, cols), cell_m=CELL_M))
 
 
 def draw_plan(truth: GroundTruth, floor_z_m: float) -> Plan:
