@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
 from sim.core.interface import FORWARD_M, MOVES, TURN_RAD, Action, require_action, wrap_angle
+from sim.robot.profile import towards
 
 POSITION_TOLERANCE_M = 0.002
 """A forward has reached its end this near to it ..."""
@@ -151,8 +152,8 @@ class ActionController:
         limits = self._limits
         self._last = self._base(speed_m_s, rate_rad_s)
         change, turn = limits.acceleration_m_s2 * self._period_s, limits.turn_acceleration_rad_s2 * self._period_s
-        self._speed = _towards(self._speed, limits.speed_m_s, speed_m_s, change)
-        self._rate = _towards(self._rate, limits.rate_rad_s, rate_rad_s, turn)
+        self._speed = towards(self._speed, max(-limits.speed_m_s, min(limits.speed_m_s, speed_m_s)), change)
+        self._rate = towards(self._rate, max(-limits.rate_rad_s, min(limits.rate_rad_s, rate_rad_s)), turn)
         if self._last.blocked:
             self._speed = self._rate = 0.0
         self.collided = self.collided or self._last.collided
@@ -240,9 +241,3 @@ def stopping_velocity(remaining: float, velocity: float, acceleration: float, pe
     root = half * half - (0.5 * v0 * v0 / acceleration - goal) / acceleration
     slower = acceleration * (math.sqrt(root) - half) if root > 0.0 else 0.0
     return math.copysign(max(0.0, slower), remaining)
-
-
-def _towards(velocity: float, most: float, command: float, change: float) -> float:
-    """Returns the velocity after a period in which it moves to a command, which is limited to `most`, by a change."""
-    goal = max(-most, min(most, command))
-    return max(velocity - change, min(velocity + change, goal))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
+from sim.houses.house import site_box
 
 _HAZARD = re.compile(r"hazard_(?P<kind>[a-z][a-z_]*)_\d+")
 
@@ -43,10 +44,6 @@ def read_hazards(model: mujoco.MjModel) -> tuple[Hazard, ...]:
         match = _HAZARD.fullmatch(model.site(site).name)
         if match is None or model.site_bodyid[site] != 0 or model.site_type[site] != mujoco.mjtGeom.mjGEOM_BOX:
             continue
-        rotation = np.empty(9)
-        mujoco.mju_quat2Mat(rotation, model.site_quat[site])
-        half = np.abs(rotation.reshape(3, 3)) @ model.site_size[site]
-        x0, y0, z0 = (model.site_pos[site] - half).tolist()
-        x1, y1, z1 = (model.site_pos[site] + half).tolist()
-        hazards.append(Hazard(match[0], match["kind"], (x0, y0, z0), (x1, y1, z1)))
+        (x, y, z), (hx, hy, hz) = site_box(model, site)
+        hazards.append(Hazard(match[0], match["kind"], (x - hx, y - hy, z - hz), (x + hx, y + hy, z + hz)))
     return tuple(hazards)

@@ -80,11 +80,11 @@ def read_rooms(model: mujoco.MjModel) -> tuple[Room, ...]:
         match = _ROOM.fullmatch(model.site(site).name)
         if match is None or model.site_bodyid[site] != 0 or model.site_type[site] != mujoco.mjtGeom.mjGEOM_BOX:
             continue
-        boxes.setdefault(match["room"], (match["kind"], []))[1].append(_site_box(model, site))
+        boxes.setdefault(match["room"], (match["kind"], []))[1].append(site_box(model, site))
     return tuple(Room(name, kind, tuple(parts)) for name, (kind, parts) in boxes.items())
 
 
-def _site_box(model: mujoco.MjModel, site: int) -> Box:
+def site_box(model: mujoco.MjModel, site: int) -> Box:
     """Returns the axis-aligned box around a box site of the world body."""
     rotation = np.empty(9)
     mujoco.mju_quat2Mat(rotation, model.site_quat[site])

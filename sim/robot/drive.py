@@ -21,7 +21,7 @@ from sim.robot.config import DriveConfig, RobotConfig
 from sim.robot.contacts import Contact, ContactLog
 from sim.robot.motors import Motors
 from sim.robot.odometry import Odometry
-from sim.robot.profile import Trapezoid
+from sim.robot.profile import Trapezoid, towards
 from sim.robot.variation import ActionErrors, Variation
 
 HELD_SHARE = 0.8
@@ -254,7 +254,7 @@ class Driver:
         """
         odometry = self._odometry
         if self._touching:
-            rate_rad_s = _clamp(rate_rad_s, odometry.rate_rad_s, self._full_slip / self._half_track)
+            rate_rad_s = towards(odometry.rate_rad_s, rate_rad_s, self._full_slip / self._half_track)
             spare = self._full_slip - abs(rate_rad_s - odometry.rate_rad_s) * self._half_track
             speed_m_s = max(speed_m_s, odometry.speed_m_s - spare)
             speed_m_s = min(speed_m_s, odometry.speed_m_s + min(self._push_slip, spare))
@@ -266,10 +266,6 @@ class Driver:
         if self._body.touch[0] > 0.0:
             self._touched_until = self._ticks + self._touch_ticks
             self._log.sample(self._ticks)
-
-
-def _clamp(value: float, centre: float, reach: float) -> float:
-    return max(centre - reach, min(centre + reach, value))
 
 
 class Blocking:

@@ -5,6 +5,11 @@ from __future__ import annotations
 import math
 
 
+def towards(value: float, goal: float, step: float) -> float:
+    """Returns a value moved towards a goal by at most a step."""
+    return max(value - step, min(value + step, goal))
+
+
 class Trapezoid:
     """A motion that accelerates, keeps its speed and decelerates; short motions only accelerate and decelerate."""
 

@@ -24,6 +24,7 @@ from sim.robot.contacts import ContactLog
 from sim.robot.drive import Motion
 from sim.robot.motors import Motors
 from sim.robot.odometry import Odometry
+from sim.robot.profile import towards
 from sim.robot.variation import Variation
 
 FREE_SHARE = 0.5
@@ -105,12 +106,12 @@ class VelocityDrive:
     def _step(self, command: Velocity) -> None:
         """Moves the commanded velocity towards the command, applies it for a tick and records the movement."""
         drive = self._drive
-        speed = _towards(self._speed_m_s, command.speed_m_s, drive.acceleration_m_s2 * self._tick_s)
-        rate = _towards(self._rate_rad_s, command.rate_rad_s, drive.turn_acceleration_rad_s2 * self._tick_s)
+        speed = towards(self._speed_m_s, command.speed_m_s, drive.acceleration_m_s2 * self._tick_s)
+        rate = towards(self._rate_rad_s, command.rate_rad_s, drive.turn_acceleration_rad_s2 * self._tick_s)
         wheels = []
         for measured, side in zip(self._body.wheel_speeds(), (-1.0, 1.0), strict=True):
             target = (speed + side * rate * self._half_track_m) / self._radius_m
-            wheels.append(_towards(measured, target, self._reach_rad_s))
+            wheels.append(towards(measured, target, self._reach_rad_s))
         left, right = wheels
         self._motors.command(left, right)
         self._speed_m_s = 0.5 * (left + right) * self._radius_m
@@ -155,8 +156,3 @@ class VelocityDrive:
         if self._pushes_forward(command) or command.rate_rad_s == 0.0:
             return Action.MOVE_FORWARD
         return Action.TURN_LEFT if command.rate_rad_s > 0.0 else Action.TURN_RIGHT
-
-
-def _towards(value: float, goal: float, step: float) -> float:
-    """Returns a value moved towards a goal by at most a step."""
-    return max(value - step, min(value + step, goal))

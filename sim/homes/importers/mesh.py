@@ -48,12 +48,7 @@ class MeshScene:
 @dataclass(frozen=True, eq=False)
 class _Node:
     name: str
-    surfaces: tuple[Surface, ...]
-
-    @property
-    def corners_m(self) -> NDArray[np.float64]:
-        """All triangles (m, 3, 3)."""
-        return np.concatenate([surface.corners_m for surface in self.surfaces])
+    shape: Shape
 
 
 MAX_SEARCHED = 100_000
@@ -156,7 +151,7 @@ def _nodes(surfaces: Sequence[Surface]) -> list[_Node]:
         for number in np.unique(surface.face_ids).tolist():
             piece = surface.part(surface.face_ids == number)
             parts.setdefault(f"{surface.node}_{number}", []).append(replace(piece, face_ids=None))
-    return [_Node(name, tuple(surfaces)) for name, surfaces in parts.items()]
+    return [_Node(name, Shape(tuple(surfaces))) for name, surfaces in parts.items()]
 
 
 def _proposals(nodes: Sequence[_Node], by_rule: Mapping[str, str]) -> tuple[Proposal, ...]:
@@ -167,14 +162,14 @@ def _proposals(nodes: Sequence[_Node], by_rule: Mapping[str, str]) -> tuple[Prop
         if node.name not in by_rule and words is not None:
             named[node.name] = Proposal(node.name, words, "name")
     categories = {**{name: proposal.category for name, proposal in named.items()}, **by_rule}
-    floors = [node.corners_m for node in nodes if categories.get(node.name) == "floor"]
-    everything = np.concatenate([node.corners_m for node in nodes])
+    floors = [node.shape.corners_m for node in nodes if categories.get(node.name) == "floor"]
+    everything = np.concatenate([node.shape.corners_m for node in nodes])
     size_m = np.ptp(everything.reshape(-1, 3), axis=0)
     lowest_m = find_levels(np.concatenate(floors) if floors else everything)[0]
     for node in nodes:
         if node.name in categories:
             continue
-        points = node.corners_m.reshape(-1, 3) - np.array([0.0, 0.0, lowest_m])
+        points = node.shape.corners_m.reshape(-1, 3) - np.array([0.0, 0.0, lowest_m])
         category = category_by_size(points.min(axis=0), points.max(axis=0))
         if category is None and _is_whole(node, size_m):
             category = "wall"
@@ -183,12 +178,12 @@ def _proposals(nodes: Sequence[_Node], by_rule: Mapping[str, str]) -> tuple[Prop
 
 
 def _materials(node: _Node) -> list[str]:
-    return list(dict.fromkeys(surface.material for surface in node.surfaces if surface.material))
+    return list(dict.fromkeys(surface.material for surface in node.shape.surfaces if surface.material))
 
 
 def _is_whole(node: _Node, home_m: NDArray[np.float64]) -> bool:
     """Returns whether a node extends over a home of this size (3,)."""
-    size_m = np.ptp(node.corners_m.reshape(-1, 3), axis=0)
+    size_m = np.ptp(node.shape.corners_m.reshape(-1, 3), axis=0)
     return bool((size_m[:2] >= WHOLE_SHARE * home_m[:2]).all() and size_m[2] >= WHOLE_M)
 
 
@@ -200,7 +195,7 @@ def _objects(nodes: Sequence[_Node], categories: Mapping[str, str], losses: Loss
         if category == VOID:
             losses.left_out[f"{node.name}: the table says void"] += 1
             continue
-        objects.append(MeshObject(category, node.name, Shape(node.surfaces)))
+        objects.append(MeshObject(category, node.name, node.shape))
         losses.furniture[category] += 1
     if not objects or any(item.category == "floor" for item in objects):
         return objects

@@ -33,6 +33,7 @@ from sim.core.reading import (
     parse_json,
     read_json,
 )
+from sim.training.views.coco import MaskRuns
 
 GOAL_IDS = np.array([MPCAT40_ID[name] for name in GOAL_CATEGORIES])
 """mpcat40 ids of the goal categories."""
@@ -54,13 +55,6 @@ class _Note(msgspec.Struct):
     config: _NoteConfig = msgspec.field(default_factory=_NoteConfig)
 
 
-class _Runs(msgspec.Struct):
-    """The run-length encoded mask of an object."""
-
-    size: tuple[Count, Count]
-    counts: list[Count]
-
-
 class _Object(msgspec.Struct):
     """An object of a view, as COCO describes it."""
 
@@ -69,7 +63,7 @@ class _Object(msgspec.Struct):
     category_id: Annotated[int, msgspec.Meta(ge=0, lt=len(MPCAT40))]
     area: Count
     bbox: tuple[_Pixel, _Pixel, _Pixel, _Pixel]
-    segmentation: _Runs
+    segmentation: MaskRuns
 
 
 class _PixelNote(msgspec.Struct):

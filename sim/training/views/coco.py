@@ -26,8 +26,8 @@ CATEGORIES: tuple[dict[str, object], ...] = tuple(
 """The categories of COCO files; their ids are those of mpcat40."""
 
 
-class _Runs(msgspec.Struct):
-    """A run-length encoded mask."""
+class MaskRuns(msgspec.Struct):
+    """The run-length encoded mask of an object."""
 
     size: tuple[Count, Count]
     counts: list[Count]
@@ -100,7 +100,7 @@ def decode_mask(segmentation: Mapping[str, Sequence[int]]) -> NDArray[np.bool_]:
     Raises:
         ConfigError: `size` or `counts` is missing, is not a list of whole numbers from 0 on, or they contradict.
     """
-    runs = convert(dict(segmentation), _Runs, where="The mask of an object")
+    runs = convert(dict(segmentation), MaskRuns, where="The mask of an object")
     (height, width), total = runs.size, sum(runs.counts)
     if total != height * width or total > MAX_PIXELS:
         raise ConfigError(

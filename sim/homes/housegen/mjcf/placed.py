@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+from sim.core.geometry.pose import Pose
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.furniture.item import Item
 
@@ -35,8 +35,7 @@ class PlacedItem:
 
     def to_world(self, x_m: float, y_m: float) -> tuple[float, float]:
         """Returns the world position in plan of a point of the item's frame."""
-        c, s = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
-        return self.x_m + c * x_m - s * y_m, self.y_m + s * x_m + c * y_m
+        return Pose(self.x_m, self.y_m, self.yaw_rad).place_of(x_m, y_m)
 
 
 @dataclass(frozen=True)
