@@ -93,9 +93,16 @@ def normal_form(phrase: str) -> str:
     return " ".join(words)
 
 
-def in_words(category: str) -> str:
-    """Returns a category as a word: `chest_of_drawers` is "chest of drawers"."""
-    return "television" if category == "tv_monitor" else category.replace("_", " ")
+def in_words(goal: str) -> str:
+    """Returns the name of a category, "chest of drawers", or a goal in words from its noun phrase on."""
+    words = "television" if goal == "tv_monitor" else goal.strip().replace("_", " ")
+    return re.sub(r"^((find|go to|look for) )?((the|an?) )?", "", words, flags=re.IGNORECASE)
+
+
+def with_article(goal: str) -> str:
+    """Returns a category or a goal in words with its article: "an armchair"."""
+    name = in_words(goal)
+    return name if name in ("clothes", "gym equipment", "seating") else f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
 
 
 @functools.cache

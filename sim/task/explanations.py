@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.interface import Action, SuccessRule
+from sim.core.vocabulary import in_words, with_article
 from sim.task.failures import (
     LOOP_STEPS,
     STOPPED_AT_GOAL_M,
@@ -73,18 +73,6 @@ class Outcome:
     """For example "Found after 48 steps"."""
     sentence: str
     """Reason why the STOP counts, or does not count."""
-
-
-def in_words(category: str) -> str:
-    """Returns the name of a category with spaces, "chest of drawers", or a goal in words from its noun phrase on."""
-    words = category.strip().replace("_", " ")
-    return re.sub(r"^((find|go to|look for) )?((the|an?) )?", "", words, flags=re.IGNORECASE)
-
-
-def with_article(category: str) -> str:
-    """Returns the name of a category with its article: "an armchair"."""
-    name = in_words(category)
-    return name if name in ("clothes", "gym equipment", "seating") else f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
 
 
 def explain_end(

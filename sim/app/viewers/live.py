@@ -20,11 +20,12 @@ import numpy as np
 
 from sim.app.viewers.viewer import Moment
 from sim.core.interface import MPCAT40_ID, ConfigError
+from sim.core.vocabulary import in_words
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.scene import Scene
 from sim.gl import mujoco
 from sim.robot.body import PREFIX, ROBOT_GROUP
-from sim.task.explanations import ACTION_WORDS, in_words
+from sim.task.explanations import ACTION_WORDS
 from sim.task.result import RolloutResult, outcome_of
 
 ACTION_S = 0.3

@@ -29,8 +29,9 @@ from sim.app.viewers.palette import PALETTE, colour_segmentation
 from sim.app.viewers.text import BOLD, NORMAL, text_width, wrapped, write
 from sim.app.viewers.viewer import Colour, Moment
 from sim.core.interface import MPCAT40, MPCAT40_ID, CameraModel, Perceived
+from sim.core.vocabulary import in_words, with_article
 from sim.core.wishes import categories_of
-from sim.task.explanations import ACTION_WORDS, Outcome, in_words, with_article
+from sim.task.explanations import ACTION_WORDS, Outcome
 from sim.task.objectnav import Task
 
 Picture = NDArray[np.uint8]

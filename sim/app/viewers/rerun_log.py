@@ -39,8 +39,9 @@ from sim.app.viewers.viewer import MapPainter, Moment
 from sim.core.files import part_file
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40, CameraModel, ConfigError
+from sim.core.vocabulary import in_words
 from sim.env.objectnav import ObjectNavEnv
-from sim.task.explanations import ACTION_WORDS, in_words
+from sim.task.explanations import ACTION_WORDS
 from sim.task.result import RolloutResult, outcome_of
 
 FOLDER = "rerun"

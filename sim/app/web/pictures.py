@@ -15,8 +15,8 @@ from sim.app.viewers.palette import PALETTE
 from sim.app.viewers.topview import TopView
 from sim.app.viewers.viewer import Colour, Moment
 from sim.core.interface import MPCAT40
+from sim.core.vocabulary import in_words
 from sim.env.scene import Scene
-from sim.task.explanations import in_words
 
 NAMES = ("camera", "chase", "predicted", "score", "map", "plan", "semantic", "depth")
 """The pictures by name."""

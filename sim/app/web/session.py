@@ -31,11 +31,12 @@ from sim.core.errors import EpisodeError, debug
 from sim.core.goals import NO_GOAL, GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, Action, Agent, Closable, Observation, Overridable, StatesTarget
 from sim.core.reading import printable
+from sim.core.vocabulary import in_words, with_article
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
 from sim.episodes.seeds import drawing_generator, episode_seeds
-from sim.task.explanations import ACTION_WORDS, explain_end, in_words, with_article
+from sim.task.explanations import ACTION_WORDS, explain_end
 from sim.task.result import RolloutResult
 
 _NAMED_DIFFERENCES = 4

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
 from sim.core.interface import GOAL_CATEGORIES, MOVES, Action, Observation
-from sim.core.vocabulary import in_words
+from sim.core.vocabulary import with_article
 from sim.episodes.episode import Episode
 
 FPS = 4
@@ -34,7 +34,6 @@ VECTORS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     }
 )
 """Names of the entries of each vector, float32."""
-_NO_ARTICLE = ("clothes", "seating", "gym_equipment")
 
 
 def picture_of(rgb: NDArray[np.uint8], width_px: int) -> NDArray[np.uint8]:
@@ -79,11 +78,7 @@ def action_of(vector: NDArray[np.floating]) -> Action:
 
 def task_of(goal: str) -> str:
     """Returns a goal, a category or words, as the task of a policy: "find a chair"."""
-    if goal not in GOAL_CATEGORIES:
-        return f"find {goal}"
-    name = in_words(goal)
-    article = "" if goal in _NO_ARTICLE else "an " if name[0] in "aeiou" else "a "
-    return f"find {article}{name}"
+    return f"find {with_article(goal) if goal in GOAL_CATEGORIES else goal}"
 
 
 def require_one_text(episodes: Iterable[Episode]) -> None:
