@@ -21,8 +21,6 @@ GoalKind = Literal["category", "words", "description", "instance", "picture", "n
 goal of a person who drives around in a house."""
 PICTURE_PX = 512
 """Default width and height of a picture of a goal, as in GOAT-Bench and InstanceImageNav."""
-MAX_TEXT = 300
-"""Largest number of characters of a goal."""
 MAX_GOALS = 50
 """Largest number of goals of a chain."""
 

@@ -58,7 +58,9 @@ _MARKS = (
 )
 """The byte order marks that Windows programs write, with the encoding that follows."""
 
-Metres = Annotated[float, Meta(ge=-10_000.0, le=10_000.0)]
+FARTHEST_M = 10_000.0
+"""Largest coordinate or size."""
+Metres = Annotated[float, Meta(ge=-FARTHEST_M, le=FARTHEST_M)]
 """A coordinate or a length."""
 Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
 """Any other measured number."""

@@ -22,6 +22,8 @@ Size = Literal["largest", "smallest"]
 Shape = Literal["round"]
 Place = Literal["next to", "on", "under"]
 
+MAX_TEXT = 300
+"""Largest number of characters of a goal."""
 _COLOURS: Mapping[str, ColourName] = MappingProxyType(
     {name: name for name in get_args(ColourName)}
     | {"gray": "grey", "cream": "beige", "tan": "beige", "ivory": "white", "violet": "purple", "golden": "yellow"}
@@ -132,8 +134,8 @@ def parse_wish(text: str) -> Wish:
     Raises:
         WishError: it is empty or too long, or has a word that is not known; the message names the word.
     """
-    if not text.strip() or len(text) > 300:
-        raise WishError(f"A goal in words has 1 to 300 characters, got {len(text)}.")
+    if not text.strip() or len(text) > MAX_TEXT:
+        raise WishError(f"A goal in words has 1 to {MAX_TEXT} characters, got {len(text)}.")
     rest = normal_form(_BEGINNINGS.sub("", normal_form(text)))
     room, in_room = "", _IN_ROOM.search(" " + rest)
     if in_room:

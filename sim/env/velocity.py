@@ -13,11 +13,8 @@ from numpy.typing import ArrayLike
 from sim.core.errors import ConfigError
 from sim.core.interface import MAX_STEPS, Action
 from sim.env.objectnav import ObjectNavEnv, StepResult
+from sim.robot.variation import ACTION_S
 from sim.robot.velocity import Velocity
-
-ACTION_S = 1.2
-"""Duration of the longest discrete action, a forward from rest to rest. Windows of `n` actions in the metrics are `n`
-times as long."""
 
 
 class ObjectNavVelocityEnv(ObjectNavEnv):

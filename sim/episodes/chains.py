@@ -2,7 +2,7 @@
 
 - The objects of a goal are none of an earlier goal's, unless it is a second visit, which asks for just the same
   objects, in the same or in other words. At least one other goal lies between the two visits.
-- From every place where a STOP for a goal succeeds there is a path to the next goal, of at least `LEAST_APART_M`: no
+- From every place where a STOP for a goal succeeds there is a path to the next goal, of at least `MIN_APART_M`: no
   goal is reached before it was asked for.
 
 A kind of goals is an entry of `KINDS` of the command that calls this, a function that lists goals of a house.
@@ -18,8 +18,8 @@ import numpy as np
 from sim.core.goals import GoalSpec
 from sim.task.objectnav import Task
 
-LEAST_GOALS, MOST_GOALS = 5, 10
-LEAST_APART_M = 1.0
+MIN_GOALS, MAX_GOALS = 5, 10
+MIN_APART_M = 1.0
 """Length of the shortest path from a place where a STOP succeeds to the next goal."""
 SECOND_VISITS = 0.3
 """Share of second visits among the goals from the third on, as far as the house allows."""
@@ -50,7 +50,7 @@ class ChainDrawer:
 
     def draw(self, rng: np.random.Generator) -> tuple[GoalSpec, ...]:
         """Returns a chain; (): the house has too few goals. Kinds take turns in a random order."""
-        length = int(rng.integers(LEAST_GOALS, MOST_GOALS + 1))
+        length = int(rng.integers(MIN_GOALS, MAX_GOALS + 1))
         chain: list[_Asked] = []
         kinds: list[str] = []
         while len(chain) < length:
@@ -61,7 +61,7 @@ class ChainDrawer:
             if following is None:
                 break
             chain.append(following)
-        return tuple(asked.goal for asked in chain) if len(chain) >= LEAST_GOALS else ()
+        return tuple(asked.goal for asked in chain) if len(chain) >= MIN_GOALS else ()
 
     def _first_visit(self, chain: list[_Asked], kinds: list[str], rng: np.random.Generator) -> _Asked | None:
         """Returns a goal with new objects, of the next kind that has one; None: there is none."""
@@ -100,4 +100,4 @@ class ChainDrawer:
         """Returns whether the path from each place where a STOP for one goal succeeds to the next is long enough."""
         ends = self._task.truth.target(before.text, self._floor_z_m).reached & self._inside
         lengths_m = self._task.truth.target(after.text, self._floor_z_m).distance_m[ends]
-        return bool(np.isfinite(lengths_m).all() and lengths_m.min() >= LEAST_APART_M)
+        return bool(np.isfinite(lengths_m).all() and lengths_m.min() >= MIN_APART_M)

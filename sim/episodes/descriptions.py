@@ -39,7 +39,7 @@ _NEAR_M, _FAR_M = 0.45, 1.1
 """Gaps that are clearly next to each other, and clearly not."""
 _SIZE_RATIO = 1.25
 """Sizes that differ by this factor are clearly different."""
-_LEAST_PIXELS, _LEAST_SHARE = 400, 0.4
+_MIN_PIXELS, _MIN_SHARE = 400, 0.4
 """Pixels of an object from which its colour is measured, and share of them that its colour must have."""
 _ROUND, _NOT_ROUND = 0.95, 0.8
 """Roundness (`HouseObject.roundness`) from which an object is clearly round, and up to which it is clearly not."""
@@ -236,10 +236,10 @@ class Descriptions:
         for pose in self._views_of(item):
             images = self._camera.render(world.data, pose, ("rgb", "geom"))
             shown = np.isin(images["geom"], geoms)
-            if np.count_nonzero(shown) >= _LEAST_PIXELS:
+            if np.count_nonzero(shown) >= _MIN_PIXELS:
                 counts += np.bincount(colour_numbers(images["rgb"][shown] / 255.0), minlength=len(COLOUR_NAMES))
         best = int(np.argmax(counts))
-        return COLOUR_NAMES[best] if counts.sum() and counts[best] >= _LEAST_SHARE * counts.sum() else None
+        return COLOUR_NAMES[best] if counts.sum() and counts[best] >= _MIN_SHARE * counts.sum() else None
 
     def _views_of(self, item: HouseObject) -> list[Pose]:
         """Returns up to three poses from which an object can be seen, 1.2 to 2.5 m away where there are such."""

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from sim.core.errors import EpisodeError
 from sim.core.geometry.pose import Pose
 from sim.core.goals import NO_GOAL, GoalSpec, require_chain
+from sim.core.reading import FARTHEST_M
 from sim.core.wishes import require_goal
-
-FARTHEST_M = 10_000.0
-"""Largest coordinate of a start."""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ _AIM = 0.12
 """The camera looks past the middle of the object by at most this share of its field of view, in each direction."""
 _OFF_MIDDLE = 0.18
 """The mean of the object's pixels is at most this share of the width away from the middle of the picture."""
-_LEAST_SHARE, _MOST_SHARE = 0.05, 0.6
+_MIN_SHARE, _MAX_SHARE = 0.05, 0.6
 """Share of the pixels that show the object."""
 _RIVAL_SHARE = 1.0 / 3.0
 """Most pixels that show another object of its category, as a share of the object's."""
@@ -94,7 +94,7 @@ class GoalPictures:
         counts = np.bincount(objects[objects >= 0], minlength=len(labels.instances))
         number = labels.instances.index(item.instance)
         own = int(counts[number])
-        if not _LEAST_SHARE * objects.size <= own <= _MOST_SHARE * objects.size:
+        if not _MIN_SHARE * objects.size <= own <= _MAX_SHARE * objects.size:
             return False
         middle = np.argwhere(objects == number).mean(axis=0) / len(objects) - 0.5
         near = np.count_nonzero(images["depth"] == 0.0)

@@ -19,7 +19,7 @@ import numpy as np
 
 from sim.core.errors import HouseError, ObjectNavError
 from sim.core.pictures import image_size_px
-from sim.core.reading import MAX_BYTES, open_plain, printable, read_bytes, reason_of
+from sim.core.reading import FARTHEST_M, MAX_BYTES, open_plain, printable, read_bytes, reason_of
 from sim.gl import mujoco
 from sim.houses.attachments import Attachment, attach, attachment_of, use_absolute_paths
 from sim.houses.geoms import data_at_rest
@@ -49,8 +49,6 @@ MAX_CONTACTS = 5000
 """Largest number of contacts of a house in its initial state; more do not fit the memory that MuJoCo reserves."""
 LARGEST = 1e15
 """Largest magnitude of a number in a file."""
-FARTHEST_M = 10_000.0
-"""Largest coordinate or size of a geom, a body, a site or a vertex."""
 _SUSPECT = re.compile(r"(?=\s*[-+.\dnNiI])[^nNeExX]*?(?:[nNxX]|[eE]\+?\d{2}|\d{16})", re.DOTALL)
 """Matches a list of numbers if one of them may be nan, inf or beyond `LARGEST`. The test is fast: most names fail at
 the first character."""

@@ -17,7 +17,7 @@ from sim.core.geometry.compiling import njit
 STEP = 6
 """Pixels of the image for each point of the small grid."""
 _HALF = STEP // 2
-_LEAST = np.float32(0.3)
+_MIN_SHARE = np.float32(0.3)
 """Smallest share of light that ambient occlusion leaves."""
 _BRIGHT = 224
 """Lamps and the sky emit light: colours brighter than this are darkened less, from 16 more on not at all."""
@@ -88,7 +88,7 @@ def open_share(points: NDArray, taps: NDArray, focal_px: float, radius_m: float,
                 work[3, j] = depth[place[j]]
             _lose(share, points, i, work, np.float32(1.0 / radius_m**2), weight)
         for j in range(columns):
-            share[i, j] = share[i, j] if share[i, j] > _LEAST else _LEAST
+            share[i, j] = share[i, j] if share[i, j] > _MIN_SHARE else _MIN_SHARE
     return share
 
 

@@ -17,7 +17,8 @@ import numpy as np
 from sim.robot.conditions import NOMINAL, Conditions
 
 ACTION_S = 1.2
-"""Duration of a forward from rest to rest: errors of a robot that is driven by velocities change in this time."""
+"""Duration of the longest discrete action, a forward from rest to rest. Errors of a robot that is driven by velocities
+change in this time, and windows of `n` actions in the metrics are `n` times as long."""
 MAX_SIGMAS = 3.0
 """Larger errors are cut off, as in Habitat."""
 

@@ -13,7 +13,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
-from sim.core.goals import MAX_TEXT, PICTURE_PX
+from sim.core.goals import PICTURE_PX
 from sim.core.interface import (
     CONTEXT_FIELDS,
     GOAL_CATEGORIES,
@@ -22,6 +22,7 @@ from sim.core.interface import (
     POSE_SENSORS,
     CameraModel,
 )
+from sim.core.wishes import MAX_TEXT
 from sim.sensors.measured import BumperSensor, ImuSensor, OdometrySensor
 from sim.sensors.scan import ScanSensor
 from sim.sensors.semantic_map import SemanticMapSensor

@@ -30,7 +30,7 @@ _ON_M = 0.08
 """Largest gap between the top of an object and the bottom of one that lies on it."""
 _OVERHEAD_M = 1.8
 """An object whose lowest point is higher above its floor, such as a ceiling lamp, is no goal."""
-MOST_LISTED = 40
+MAX_LISTED = 40
 """Largest number of names that a message lists."""
 
 
@@ -232,7 +232,7 @@ class Meaning:
         same = self.named(wish.names)
         if not same:
             listed = self.names()
-            names = ", ".join(sorted(listed)[:MOST_LISTED]) + (", ..." if len(listed) > MOST_LISTED else "")
+            names = ", ".join(sorted(listed)[:MAX_LISTED]) + (", ..." if len(listed) > MAX_LISTED else "")
             return f"{self._house} has no '{wish.noun}'. It has: {names}."
         return f"{self._house} has no '{wish.text}'. It has: {_described(same)}."
 

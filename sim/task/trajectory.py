@@ -20,13 +20,12 @@ from numpy.typing import NDArray
 from sim.core.files import part_file
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, ConfigError
-from sim.core.reading import MAX_BYTES, Metres, parse_json, read_npz, reason_of
+from sim.core.reading import FARTHEST_M, MAX_BYTES, Metres, parse_json, read_npz, reason_of
 from sim.robot.drive import Ended, Motion
 from sim.task.result import NO_STOP_TARGET, READ_BY, EndReason, EpisodeResult, StopTarget
 
 FORMAT = 1
 """Version of the file format; it is increased when the arrays change their meaning."""
-FARTHEST_M = 10_000.0
 FOLDER = "trajectories"
 ENDED: tuple[str, ...] = get_args(Ended)
 """Meaning of the numbers in `Trajectory.ended`."""

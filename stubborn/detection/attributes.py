@@ -36,7 +36,7 @@ _NO_COLOUR = 0.3
 _SEEN_ALONE = 0.85
 """The factor of an object that was seen well but not beside what the wish names is this share of `UNDECIDED`: what is
 beside it may be out of the picture."""
-_LEAST_PIXELS = 60
+_MIN_PIXELS = 60
 """Pixels of a track, at the resolution of the posteriors, from which its colour is judged."""
 _NEXT_TO_M, _SAME_ROOM_M = 0.75, 4.5
 """Largest gap in plan of objects next to each other, and largest distance of those that tell the kind of a room."""
@@ -227,7 +227,7 @@ class Attributes:
 
     def _colour_factor(self, track: int, colour: str, undecided: float) -> float:
         counts = self._colours[track]
-        if counts.sum() < _LEAST_PIXELS:
+        if counts.sum() < _MIN_PIXELS:
             return undecided
         colours = fitted().colours
         logits = np.array(colours.weights) @ np.sqrt(counts / counts.sum()) + np.array(colours.offsets)

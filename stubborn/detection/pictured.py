@@ -23,7 +23,7 @@ CELLS = 384
 """Cells of CIELAB that are counted: six of lightness, eight of each of the other two coordinates."""
 _MIDDLE = 0.5
 """Standard deviation, as a share of half the side, of the weight that pixels in the middle of a picture have."""
-_LEAST_PIXELS, _LEAST_SHARE = 60, 0.004
+_MIN_PIXELS, _MIN_SHARE = 60, 0.004
 """Pixels of a track, at the resolution of the posteriors, from which it is judged, and their share of a frame whose
 surroundings are those of the track."""
 
@@ -73,7 +73,7 @@ class PictureEvidence:
         cells, tracks = colour_cells(rgb).ravel(), pixels.track.ravel()
         frame = np.bincount(cells, minlength=CELLS).astype(np.float32)
         numbers, counts = np.unique(tracks[tracks > 0], return_counts=True)
-        for track in numbers[counts >= max(_LEAST_PIXELS, _LEAST_SHARE * tracks.size)].tolist():
+        for track in numbers[counts >= max(_MIN_PIXELS, _MIN_SHARE * tracks.size)].tolist():
             own = np.bincount(cells[tracks == track], minlength=CELLS)
             self._own[track] += own
             self._around[track] += frame - own
@@ -88,7 +88,7 @@ class PictureEvidence:
 
     def _probability(self, goal: PictureGoal, track: int, undecided: float) -> float:
         """Returns the probability that a track is the object of a picture."""
-        if self._own[track].sum() < _LEAST_PIXELS:
+        if self._own[track].sum() < _MIN_PIXELS:
             return undecided
         alike = similarities(goal, _shares_of(self._own[track]), _shares_of(self._around[track]))
         return fitted().picture.probability(alike)

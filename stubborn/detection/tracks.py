@@ -24,7 +24,7 @@ from stubborn.detection.fusion import Fusion
 from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlaps_of, regions_of, voxels_of
 from stubborn.mapping.projection import Rays
 
-_LEAST = 0.02
+_MIN_PROBABILITY = 0.02
 """Context does not change a probability below this: it would stay far below the limit for a look."""
 _ALMOST_1 = np.float32(0.999)
 """The largest probability of a track in the context of others."""
@@ -171,7 +171,7 @@ class Tracks:
         counts = self._size[: self.count + 1] >= least_voxels
         counts[0] = False
         probability = np.where(counts, self.evidence.probability[: self.count + 1, MPCAT40_ID[goal] - 1], np.float32(0))
-        likely = np.flatnonzero(probability >= _LEAST)
+        likely = np.flatnonzero(probability >= _MIN_PROBABILITY)
         if context is not None and likely.size:
             by_class = self.evidence.probability[likely]
             by_class[:, IS_OBJECT] *= np.exp(share * context.log_ratios(self._nearby(likely, counts, context.radius_m)))

@@ -42,8 +42,8 @@ from sim.houses.house import House
 from sim.robot.config import RobotConfig
 
 _PX_M = 0.02
-_EYE_M, _SIDE_PX, _LEAST_PIXELS, _ENOUGH_VIEWS = 0.88, 480, 400, 3
-_NEXT_TO_M, _ON_M, _OVERHEAD_M, _LEAST_SIZE_M = 0.6, 0.08, 1.8, 0.15
+_EYE_M, _SIDE_PX, _MIN_PIXELS, _ENOUGH_VIEWS = 0.88, 480, 400, 3
+_NEXT_TO_M, _ON_M, _OVERHEAD_M, _MIN_SIZE_M = 0.6, 0.08, 1.8, 0.15
 _LABEL = re.compile(r"[a-z_]+_\d+")
 _STRUCTURES = ("wall", "door", "window")
 _COLOURS = ("white", "grey", "black", "beige", "brown", "red", "orange", "yellow", "green", "blue", "purple", "pink")
@@ -146,7 +146,7 @@ def _written(house: House, most: int, rng: np.random.Generator) -> list[tuple[st
     scene = Scene(house, robot=RobotConfig(), camera=CameraModel(), profile="fast")
     scene.world.restore()
     writer, written = Descriptions(scene.task, CameraModel()), list[tuple[str, str]]()
-    objects = [item for item in scene.task.truth.meaning.objects if item.is_goal and item.size_m >= _LEAST_SIZE_M]
+    objects = [item for item in scene.task.truth.meaning.objects if item.is_goal and item.size_m >= _MIN_SIZE_M]
     for number in rng.permutation(len(objects)).tolist():
         if objects[number].facts.name and len(written) < most:
             written += [(described.text, described.instance) for described in writer.of(objects[number], rng)]
@@ -337,7 +337,7 @@ class _Judge:
             camera.azimuth = float(np.degrees(np.arctan2(ahead[1], ahead[0])))
             camera.elevation = float(np.degrees(np.arcsin(ahead[2] / camera.distance)))
             mask = self._mask(camera, name)
-            if np.count_nonzero(mask) < _LEAST_PIXELS:
+            if np.count_nonzero(mask) < _MIN_PIXELS:
                 continue
             shown += 1
             colours.update(_rough_colours(self._render(camera)[mask]))
@@ -351,7 +351,7 @@ class _Judge:
                 gaze = np.array([np.cos(rise) * np.cos(yaw), np.cos(rise) * np.sin(yaw), np.sin(rise)])
                 camera.lookat[:] = eye + camera.distance * gaze
                 mask = self._mask(camera, name)
-                if np.count_nonzero(mask) >= _LEAST_PIXELS:
+                if np.count_nonzero(mask) >= _MIN_PIXELS:
                     self.pictures[name] = self._render(camera), mask
         return shown > 0, colours.most_common(1)[0][0] if colours else ""
 

@@ -30,9 +30,9 @@ from sim.robot.config import RobotConfig
 from stubborn.detection.attributes import FILE
 from stubborn.detection.pictured import CELLS, PictureGoal, colour_cells, one_hot, similarities
 
-_LEAST_PIXELS = 60
+_MIN_PIXELS = 60
 _STRIDE_PX = 4
-_LEAST_EXAMPLES = 60
+_MIN_EXAMPLES = 60
 """Number of examples of each colour, drawn ones included."""
 _PICTURES = 6
 """Pictures in each house."""
@@ -92,10 +92,10 @@ def _fit_colours(shares: dict[str, list[np.ndarray]]) -> dict[str, object]:
     rng, features, labels = np.random.default_rng(0), [], []
     for name in ("", *COLOUR_NAMES):
         examples = list(shares[name])
-        if len(examples) < _LEAST_EXAMPLES and name:
+        if len(examples) < _MIN_EXAMPLES and name:
             weights = np.full(len(COLOUR_NAMES), 0.3)
             weights[COLOUR_NAMES.index(name)] = 4.0
-            examples += list(rng.dirichlet(weights, _LEAST_EXAMPLES - len(examples)))
+            examples += list(rng.dirichlet(weights, _MIN_EXAMPLES - len(examples)))
         features += examples
         labels += [name] * len(examples)
     fitted = LogisticRegression(class_weight="balanced", max_iter=2000, C=10.0)
@@ -178,7 +178,7 @@ def _count_colours(
         frame = np.bincount(cells.ravel(), minlength=CELLS)
         for number, pixels in zip(*np.unique(objects, return_counts=True), strict=True):
             item = facts[labels.instances[number].name] if number >= 0 else None
-            if item is None or pixels < _LEAST_PIXELS or not item.is_goal:
+            if item is None or pixels < _MIN_PIXELS or not item.is_goal:
                 continue
             counts = np.bincount(numbers[objects == number], minlength=len(COLOUR_NAMES))
             shares[item.facts.colour or ""].append(counts / counts.sum())

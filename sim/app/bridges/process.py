@@ -42,10 +42,9 @@ from sim.core.interface import (
     RobotModel,
     SuccessRule,
 )
-from sim.task.trajectory import FARTHEST_M
+from sim.core.reading import Metres
 
 T = TypeVar("T")
-_Metres = Annotated[float, Meta(ge=-FARTHEST_M, le=FARTHEST_M)]
 _Text = Annotated[str, Meta(max_length=MAX_HEADER_BYTES)]
 
 
@@ -61,7 +60,7 @@ class _Done(msgspec.Struct, tag_field="type", tag="done"):
 class _Chosen(msgspec.Struct, tag_field="type", tag="action"):
     action: Annotated[int, Meta(ge=0, le=5)]
     stop_confidence: Annotated[float, Meta(ge=0.0, le=1.0)] | None = None
-    stop_target_xy_m: tuple[_Metres, _Metres] | None = None
+    stop_target_xy_m: tuple[Metres, Metres] | None = None
 
 
 class _Image(msgspec.Struct):

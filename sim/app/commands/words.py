@@ -44,15 +44,15 @@ from sim.robot.config import RobotConfig
 from sim.task.meaning import HouseObject
 
 Kind = Literal["seen", "unseen", "synonyms", "descriptions", "pictures", "chains"]
-_LEAST_SIZE_M = 0.15
+_MIN_SIZE_M = 0.15
 """Smaller objects are not asked for: the camera would not resolve them."""
-_LEAST_PICTURED_M = 0.25
+_MIN_PICTURED_M = 0.25
 """Smaller objects are not asked for by a picture."""
 _UNASKED = frozenset({"blind", "curtain", "wall cabinet", "cooker hood", "glass of water", "cable", "power strip"})
 """Names that are part of the fittings of a room rather than something to go to."""
-_MOST_DRAWS = 12
+_MAX_DRAWS = 12
 """Attempts to draw a chain, for each that is wanted."""
-_MOST_PICTURES = 8
+_MAX_PICTURES = 8
 """Pictures that are drawn for the chains of a house."""
 _PER_LEVEL = 4
 """Descriptions of each level that are written for a house; more of its objects are then not tried."""
@@ -145,7 +145,7 @@ def _chains(scene: Scene, drawer: StartDrawer, house: str, count: int, rng: np.r
     rng.shuffle(objects)  # type: ignore[arg-type]
     goals = {kind: list(listed(scene, objects, rng)) for kind, listed in KINDS.items()}
     drawers = [ChainDrawer(task, goals, floor_z_m) for floor_z_m in storeys_of(task)]
-    for turn in range(_MOST_DRAWS * count):
+    for turn in range(_MAX_DRAWS * count):
         if len(episodes) == count:
             break
         chains = drawers[turn % len(drawers)]
@@ -185,7 +185,7 @@ def _descriptions(scene: Scene, objects: Sequence[HouseObject], rng: np.random.G
 
 def _some_pictures(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> Iterable[GoalSpec]:
     """Returns pictures of some objects of a house."""
-    return itertools.islice(_pictures(scene, objects, rng), _MOST_PICTURES)
+    return itertools.islice(_pictures(scene, objects, rng), _MAX_PICTURES)
 
 
 def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> Iterator[GoalSpec]:
@@ -202,7 +202,7 @@ def _pictures(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Gener
     """Yields pictures of objects of the goal categories, one of each category in turn."""
     pictures, by_category = GoalPictures(scene.task), dict[str, list[HouseObject]]()
     for item in objects:
-        if item.instance.category in GOAL_CATEGORIES and item.size_m >= _LEAST_PICTURED_M:
+        if item.instance.category in GOAL_CATEGORIES and item.size_m >= _MIN_PICTURED_M:
             by_category.setdefault(item.instance.category, []).append(item)
     try:
         for item in (item for turn in itertools.zip_longest(*by_category.values()) for item in turn if item):
@@ -226,7 +226,7 @@ def _texts(args: Args, scene: Scene, objects: Sequence[HouseObject], rng: np.ran
 
 
 def _may_be_asked(item: HouseObject) -> bool:
-    return item.is_goal and item.size_m >= _LEAST_SIZE_M and item.name not in _UNASKED and bool(item.facts.name)
+    return item.is_goal and item.size_m >= _MIN_SIZE_M and item.name not in _UNASKED and bool(item.facts.name)
 
 
 def _synonyms(name: str) -> list[str]:

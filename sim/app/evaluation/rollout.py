@@ -30,11 +30,11 @@ from sim.core.interface import (
     StatesTarget,
     as_action,
 )
-from sim.core.reading import convert
+from sim.core.reading import FARTHEST_M, convert
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.task.result import EpisodeMetrics, ModelUse, RolloutResult, failed_metrics
-from sim.task.trajectory import FARTHEST_M, Recording, trajectory_file, write_trajectory
+from sim.task.trajectory import Recording, trajectory_file, write_trajectory
 
 T = TypeVar("T")
 OnStep = Callable[[int, Agent, dict[str, Any]], None]

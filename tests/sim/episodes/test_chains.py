@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.core.goals import GoalSpec
-from sim.episodes.chains import LEAST_APART_M, LEAST_GOALS, MOST_GOALS, ChainDrawer
+from sim.episodes.chains import MAX_GOALS, MIN_APART_M, MIN_GOALS, ChainDrawer
 from sim.episodes.splits import load_split
 from sim.task.objectnav import Task
 from sim.world.world import World
@@ -48,7 +48,7 @@ def test_a_house_with_too_few_goals_has_no_chain(task: Task) -> None:
 
 def require_rules(task: Task, chain: tuple[GoalSpec, ...], floor_z_m: float = 0.0) -> None:
     """Asserts that a chain keeps the rules of the module, computed anew for its texts."""
-    assert LEAST_GOALS <= len(chain) <= MOST_GOALS
+    assert MIN_GOALS <= len(chain) <= MAX_GOALS
     objects = [frozenset(instance.name for instance in task.truth.instances(goal)) for goal in chain]
     inside = task.truth.space(floor_z_m).largest_part()
     for number, goal in enumerate(chain):
@@ -60,7 +60,7 @@ def require_rules(task: Task, chain: tuple[GoalSpec, ...], floor_z_m: float = 0.
         if number:
             ends = task.truth.target(chain[number - 1].text, floor_z_m).reached & inside
             lengths_m = task.truth.target(goal.text, floor_z_m).distance_m[ends]
-            assert LEAST_APART_M <= lengths_m.min() <= lengths_m.max() < np.inf
+            assert MIN_APART_M <= lengths_m.min() <= lengths_m.max() < np.inf
 
 
 @pytest.mark.costly

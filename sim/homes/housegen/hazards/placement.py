@@ -31,7 +31,7 @@ DESIGNS = MappingProxyType[str, tuple[Design, ...]](
 FAMILIES: tuple[str, ...] = tuple(DESIGNS)
 SHARES = MappingProxyType({"glass": 2, "slab": 2, "overhang": 1, "legs": 1, "scan": 2, "loose": 1, "door": 1})
 """Relative number of hazards of each family: more of those that only a collision shows."""
-FEWEST, MOST, FLOOR_M2 = 6, 14, 11.0
+MIN_HAZARDS, MAX_HAZARDS, FLOOR_M2 = 6, 14, 11.0
 """Least and largest number of hazards, and the floor area for each."""
 TRIES, TRIES_OF_ONE = 60, 20
 """Places that are tried for one hazard, and for each design that is drawn for it."""
@@ -62,7 +62,7 @@ def draw_hazards(
     floor = FloorMap(spec, openings)
     if count is None:
         area_m2 = sum(room.area_m2 for room in floor.rooms)
-        count = int(np.clip(round(area_m2 / FLOOR_M2), FEWEST, MOST))
+        count = int(np.clip(round(area_m2 / FLOOR_M2), MIN_HAZARDS, MAX_HAZARDS))
     looks = {"frame": look("metal", rng, pool), "dots": look("paper", rng, pool)}
     placed: list[PlacedHazard] = []
     turns = [family for family in families for _ in range(SHARES[family])]
