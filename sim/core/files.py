@@ -13,6 +13,7 @@ import io
 import os
 import stat
 import tempfile
+import urllib.parse
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any
@@ -64,6 +65,16 @@ def inside(folder: Path, name: str, *, what: str) -> Path:
         raise ConfigError(f"The {what} {name!r} leads out of its folder '{folder}'; a name inside it is allowed.")
     _require_short(path, f"The {what}")
     return path
+
+
+def episode_file(folder: Path, episode_id: str, suffix: str) -> Path:
+    """Returns the file of an episode in a folder; characters that file names cannot have become %xx."""
+    return folder / f"{urllib.parse.quote(episode_id, safe=' ')}{suffix}"
+
+
+def episode_id_of(file: Path) -> str:
+    """Returns the id of the episode to which a file of `episode_file` belongs."""
+    return urllib.parse.unquote(file.stem)
 
 
 def require_writable(path: Path, *, name: str, folder: bool) -> None:

@@ -7,7 +7,6 @@ steps are about 10 KB.
 from __future__ import annotations
 
 import contextlib
-import urllib.parse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,7 +16,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.core.files import part_file
+from sim.core.files import episode_file, part_file
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, ConfigError
 from sim.core.reading import FARTHEST_M, MAX_BYTES, Metres, parse_json, read_npz, reason_of
@@ -216,8 +215,8 @@ def joined(parts: Sequence[Trajectory]) -> Trajectory:
 
 
 def trajectory_file(run: Path, episode_id: str) -> Path:
-    """Returns the file of an episode's trajectory in a run; characters that file names cannot have become %xx."""
-    return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.npz"
+    """Returns the file of an episode's trajectory in a run."""
+    return episode_file(run / FOLDER, episode_id, ".npz")
 
 
 def write_trajectory(file: Path, trajectory: Trajectory, about: Recording | None) -> None:

@@ -13,7 +13,6 @@ from __future__ import annotations
 import itertools
 import sys
 import time
-import urllib.parse
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +23,7 @@ from sim.app import cli
 from sim.app.analysis.comparison import Run, read_run
 from sim.app.analysis.report.drawings import split_of
 from sim.app.evaluation.parallel import ordered_map
-from sim.core.files import inside
+from sim.core.files import episode_file, inside
 from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel, ConfigError
 from sim.renderer.camera import Camera
@@ -145,8 +144,7 @@ def _work_of(run: Run, args: Args) -> Iterator[HouseWork]:
 
 def _file_of(run: Path, episode_id: str, out: Path) -> Path:
     """Returns the file of a demonstration."""
-    folder = inside(out, run.resolve().name, what="A run")
-    return folder / f"{urllib.parse.quote(episode_id, safe=' ')}.npz"
+    return episode_file(inside(out, run.resolve().name, what="A run"), episode_id, ".npz")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ same options and this --out runs the missing episodes.
 
 from __future__ import annotations
 
-import urllib.parse
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +22,7 @@ from sim.app.analysis.comparison import Run, read_run
 from sim.app.evaluation.config_fields import field_text, run_differences
 from sim.app.evaluation.results import EPISODE_FOLDERS, RunDirectory, read_record
 from sim.app.evaluation.summary import summary_of
-from sim.core.files import write_atomically
+from sim.core.files import episode_id_of, write_atomically
 from sim.core.interface import ConfigError
 from sim.core.reading import read_bytes
 from sim.task.result import EpisodeResult
@@ -149,7 +148,7 @@ def copy_files(run: Run, results: Mapping[str, EpisodeResult], added: Set[str], 
     """
     for name in EPISODE_FOLDERS:
         for file in sorted((run.path / name).glob("*")):
-            episode_id = urllib.parse.unquote(file.stem)
+            episode_id = episode_id_of(file)
             result, target = run.results.get(episode_id), out / name / file.name
             if result is None or result.without_times() != results[episode_id].without_times():
                 continue

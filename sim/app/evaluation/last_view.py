@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import urllib.parse
 from pathlib import Path
 
 import cv2
 
-from sim.core.files import write_atomically
+from sim.core.files import episode_file, write_atomically
 from sim.core.interface import ConfigError
 from sim.env.objectnav import ObjectNavEnv
 
@@ -17,8 +16,8 @@ QUALITY = 85
 
 
 def picture_file(run: Path, episode_id: str) -> Path:
-    """Returns the picture of an episode in a run; characters that file names cannot have become %xx."""
-    return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.jpg"
+    """Returns the picture of an episode in a run."""
+    return episode_file(run / FOLDER, episode_id, ".jpg")
 
 
 def write_last_view(env: ObjectNavEnv, run: Path, episode_id: str) -> None:

@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import json
-import urllib.parse
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO
@@ -28,7 +27,7 @@ from sim.app.viewers.ros.definitions import definition
 from sim.app.viewers.ros.topics import TOPICS, RobotTopics, offered_qos_profiles
 from sim.app.viewers.viewer import Moment
 from sim.core.errors import ConfigError
-from sim.core.files import part_file
+from sim.core.files import episode_file, part_file
 from sim.core.interface import SCAN, Action
 from sim.core.reading import reason_of
 from sim.env.objectnav import ObjectNavEnv
@@ -49,8 +48,8 @@ def require_mcap() -> None:
 
 
 def mcap_file(run: Path, episode_id: str) -> Path:
-    """Returns the recording of an episode; characters that a file name may not hold are written as %xx."""
-    return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.mcap"
+    """Returns the recording of an episode."""
+    return episode_file(run / FOLDER, episode_id, ".mcap")
 
 
 class RosMessages:

@@ -25,7 +25,6 @@ import importlib.util
 import math
 import os
 import socket
-import urllib.parse
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -36,7 +35,7 @@ from numpy.typing import NDArray
 from sim.app.viewers.palette import PALETTE
 from sim.app.viewers.topview import TopView
 from sim.app.viewers.viewer import MapPainter, Moment
-from sim.core.files import part_file
+from sim.core.files import episode_file, part_file
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40, CameraModel, ConfigError
 from sim.core.vocabulary import in_words
@@ -68,8 +67,8 @@ def require_rerun(*, window: bool) -> None:
 
 
 def rerun_file(run: Path, episode_id: str) -> Path:
-    """Returns the recording of an episode; characters that a file name may not hold are written as %xx."""
-    return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.rrd"
+    """Returns the recording of an episode."""
+    return episode_file(run / FOLDER, episode_id, ".rrd")
 
 
 def points_in_world(

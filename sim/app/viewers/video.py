@@ -11,7 +11,6 @@ from __future__ import annotations
 import contextlib
 import queue
 import threading
-import urllib.parse
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -26,7 +25,7 @@ from sim.app.viewers.chase import ChaseView
 from sim.app.viewers.topview import TopView
 from sim.app.viewers.viewer import MapPainter, Moment, SeesFrames
 from sim.core.errors import ConfigError
-from sim.core.files import part_file
+from sim.core.files import episode_file, part_file
 from sim.core.reading import reason_of
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.scene import Scene
@@ -48,8 +47,8 @@ _WAITING_FRAMES = 8
 
 
 def video_file(run: Path, episode_id: str) -> Path:
-    """Returns the video file of an episode; characters that a file name may not hold are written as %xx."""
-    return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.mp4"
+    """Returns the video file of an episode."""
+    return episode_file(run / FOLDER, episode_id, ".mp4")
 
 
 class VideoWriter:
