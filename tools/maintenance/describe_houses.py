@@ -266,10 +266,10 @@ def _summary_table(splits: Mapping[str, Split], facts: Mapping[str, Sequence[Hou
             f"{len(houses)}",
             f"{len(splits[name].episodes)}",
             _goal_counts(splits[name]),
-            _spread([f.area_m2 for f in houses]),
-            _spread([f.rooms for f in houses]),
-            _spread([f.geoms for f in houses]),
-            _spread([f.kilobytes for f in houses]),
+            spread([f.area_m2 for f in houses]),
+            spread([f.rooms for f in houses]),
+            spread([f.geoms for f in houses]),
+            spread([f.kilobytes for f in houses]),
             f"{sum(f.movable > 0 for f in houses)}",
         ]
         rows.append(f"| {name} | {' | '.join(columns)} |")
@@ -290,7 +290,7 @@ def _goals_without_an_episode(splits: Mapping[str, Split]) -> Iterator[str]:
             yield f"\nNo episode of `{name}` has one of these goals: {', '.join(missing)}."
 
 
-def _spread(values: Sequence[float]) -> str:
+def spread(values: Sequence[float]) -> str:
     """Returns median, smallest and largest value as text."""
     return f"{statistics.median(values):.0f} ({min(values):.0f}-{max(values):.0f})"
 

@@ -11,8 +11,6 @@ that a reader who takes the last word of a compound for its meaning does not tak
 
 from __future__ import annotations
 
-import csv
-import io
 import sys
 from collections import deque
 from collections.abc import Iterator, Mapping
@@ -21,7 +19,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sim.app import cli
-from sim.core.files import write_atomically
+from sim.core.files import csv_text, write_atomically
 from sim.core.vocabulary import FILE, normal_form
 from sim.homes.housegen.furniture.names import CATEGORIES_OF_NAMES
 
@@ -96,19 +94,16 @@ class Entry(NamedTuple):
 
 def main(args: Args) -> int:
     """Writes the file; returns the exit status."""
-    wordnet, rows = WordNet(args.wordnet), io.StringIO()
+    wordnet = WordNet(args.wordnet)
     names, general, phrases = read_table()
-    writer = csv.writer(rows, lineterminator="\n")
-    writer.writerow(["word", "relation", "means"])
-    for name, categories in sorted(CATEGORIES_OF_NAMES.items()):
-        writer.writerow([name, "name", ";".join(categories)])
+    rows = [(name, "name", ";".join(categories)) for name, categories in sorted(CATEGORIES_OF_NAMES.items())]
     taken = set[str](CATEGORIES_OF_NAMES)
     anchors, own = anchors_of(names, wordnet), own_words(names)
     for word, (relation, means) in sorted({**words_of(anchors, general, wordnet), **own, **phrases}.items()):
         if word not in taken:
-            writer.writerow([word, relation, ";".join(sorted(means))])
-    write_atomically(args.out, rows.getvalue())
-    print(f"{args.out}: {rows.getvalue().count(chr(10)) - 1} words")
+            rows.append((word, relation, ";".join(sorted(means))))
+    write_atomically(args.out, csv_text(["word", "relation", "means"], rows))
+    print(f"{args.out}: {len(rows)} words")
     return 0
 
 

@@ -37,6 +37,7 @@ from sim.episodes.start_rules import Lookout
 from sim.task.footprints import Footprint
 from sim.task.objectnav import Task
 from sim.world.world import World
+from tools.maintenance.describe_houses import spread
 
 HEADER = (
     "| split | houses | floor m2 | rooms | two storeys | episodes | distance m | instances of the goal "
@@ -161,12 +162,12 @@ def _row(split: str, houses: Sequence[HouseDifficulty]) -> str:
     cells = (
         Path(split).name,
         f"{len(houses)}",
-        _spread([house.area_m2 for house in houses]),
-        _spread([house.rooms for house in houses]),
+        spread([house.area_m2 for house in houses]),
+        spread([house.rooms for house in houses]),
         f"{sum(house.storeys > 1 for house in houses)}",
         f"{len(instances)}",
         f"{statistics.median(distances_m):.1f} ({min(distances_m):.1f}-{max(distances_m):.1f})" if distances_m else "-",
-        _spread(instances),
+        spread(instances),
         _percent([count == 1 for count in instances]),
         _percent(seen),
         ", ".join(_percent([quarter == which for quarter in quarters]) for which in range(4)),
@@ -185,10 +186,6 @@ def _goals(figures: Mapping[str, Sequence[HouseDifficulty]]) -> str:
         if any(count[goal] for count in counts.values())
     ]
     return "\n".join(lines) + "\n"
-
-
-def _spread(values: Sequence[float]) -> str:
-    return f"{statistics.median(values):.0f} ({min(values):.0f}-{max(values):.0f})"
 
 
 def _percent(values: Sequence[bool]) -> str:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from rich.table import Table
 
 from sim.app.evaluation.intervals import Estimate, holm
+from sim.core.files import csv_text
 
 SIGNIFICANT, NOT_SIGNIFICANT = "significant", "not significant"
 CSV_COLUMNS = ("table", "row", "column", "value", "low95", "high95", "episodes", "houses", "verdict")
@@ -145,17 +144,15 @@ def to_markdown(tables: Sequence[ResultTable]) -> str:
 
 def to_csv(tables: Sequence[ResultTable]) -> str:
     """Returns CSV text with a line for each cell of several tables that has a number; shares are not in percent."""
-    stream = io.StringIO()
-    writer = csv.writer(stream)
-    writer.writerow(CSV_COLUMNS)
+    rows: list[Sequence[object]] = []
     for table in tables:
         for label, cells in table.rows:
             for column, cell in zip(table.header[1:], cells, strict=True):
                 if isinstance(cell, Cell):
                     value = cell.estimate
                     numbers = ("" if v is None else round(v, 6) for v in (value.mean, value.low, value.high))
-                    writer.writerow([table.name, label, column, *numbers, value.count, value.houses, cell.verdict])
-    return stream.getvalue()
+                    rows.append([table.name, label, column, *numbers, value.count, value.houses, cell.verdict])
+    return csv_text(CSV_COLUMNS, rows, end="\r\n")
 
 
 def _text(cell: Cell | str, separator: str = " ") -> str:

@@ -7,9 +7,7 @@ FOLDER/table.md, FOLDER/table.csv   written by `stubborn leaderboard`
 
 from __future__ import annotations
 
-import csv
 import html
-import io
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,6 +22,7 @@ from sim.app.submissions.contents import SUFFIX, Submission
 from sim.app.submissions.report import Report
 from sim.app.submissions.sealing import Origin
 from sim.core.errors import ConfigError
+from sim.core.files import csv_text
 from sim.task.result import EpisodeResult
 
 MIN_EPISODES = 50
@@ -201,21 +200,18 @@ NOTES = (
 
 def csv_of(rows: Sequence[Row]) -> str:
     """Returns the rows as CSV; shares are not in percent."""
-    stream = io.StringIO()
-    writer = csv.writer(stream)
-    writer.writerow(CSV_COLUMNS)
-    repeats = repeated(rows)
+    repeats, table = repeated(rows), list[Sequence[object]]()
     for row in sorted(rows, key=lambda row: (_split(row), _rank(row))):
         manifest, lines = row.submission.manifest, results_of(row.submission)
         estimates = [mean_cell(metric, lines).estimate for metric in (SUCCESS, SPL, COLLISIONS)]
         numbers = (n for estimate in estimates for n in (estimate.mean, estimate.low, estimate.high))
-        writer.writerow([
+        table.append([
             *_split(row), manifest.name, "; ".join(manifest.authors), " ".join(manifest.links), manifest.inputs.agent,
             truth_of(manifest.inputs), isolation_of(manifest.inputs), manifest.inputs.noise, row.episodes,
             *("" if n is None else round(n, 6) for n in numbers), _verified(row), row.report.origin,
             row.report.oracle_paths, row.report.shortest_paths, repeats[row.file.name], row.file.name,
         ])  # fmt: skip
-    return stream.getvalue()
+    return csv_text(CSV_COLUMNS, table, end="\r\n")
 
 
 def results_of(submission: Submission) -> list[EpisodeResult]:

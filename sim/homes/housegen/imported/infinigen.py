@@ -7,8 +7,6 @@ each asset says how it was made or why it failed, so that a stopped run resumes.
 from __future__ import annotations
 
 import contextlib
-import csv
-import io
 import json
 import os
 import select
@@ -23,7 +21,7 @@ from typing import IO
 import msgspec
 
 from sim.core.errors import ConfigError
-from sim.core.files import open_to_grow, write_atomically
+from sim.core.files import csv_text, open_to_grow, write_atomically
 from sim.core.reading import parse_json, read_json
 from sim.homes.housegen.furniture.item import Mount
 
@@ -171,15 +169,13 @@ def make_assets(
 def _write_table(out: Path) -> None:
     """Writes `models.csv` with all assets in a folder."""
     by_name = {generator.name: generator for generator in GENERATORS}
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
-    table.writerow(_COLUMNS)
+    rows = []
     for record in sorted(out.glob("*_[0-9]*.json")):
         asset, model = _before(record), record.with_suffix(".glb")
         generator = by_name.get(asset.generator) if asset is not None else None
         if asset is not None and generator is not None and asset.extent_m is not None and model.is_file():
-            table.writerow(_row(generator, asset.extent_m, model.name))
-    write_atomically(out / TABLE, text.getvalue())
+            rows.append(_row(generator, asset.extent_m, model.name))
+    write_atomically(out / TABLE, csv_text(_COLUMNS, rows))
 
 
 def _row(generator: Generator, extent_m: tuple[float, float, float], file: str) -> tuple[object, ...]:
