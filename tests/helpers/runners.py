@@ -7,6 +7,7 @@ import os
 import signal
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,11 +21,14 @@ class Script:
     """An agent that reads its actions from a list."""
 
     actions: list[Action]
+    before: Callable[[int], None] = lambda _: None
+    """Called before each action with the number of actions before it."""
 
     def reset(self, goal: str, seed: int) -> None:
         self.goal, self.left = goal, list(self.actions)
 
     def act(self, observation: object) -> Action:
+        self.before(len(self.actions) - len(self.left))
         return self.left.pop(0)
 
 

@@ -167,8 +167,6 @@ class HouseFacts:
 
 def main(args: Args) -> int:
     """Writes the page and the table."""
-    if args.workers < 1:
-        raise ConfigError(f"--workers must be at least 1, got {args.workers}.")
     root = args.root or assets_dir()
     names = [name for name in SPLITS if (root / name / f"{name}.json.gz").is_file()]
     if not names:

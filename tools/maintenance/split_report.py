@@ -28,7 +28,7 @@ from sim.app import cli
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.files import write_atomically
 from sim.core.geometry.pose import Pose, wrap_angle
-from sim.core.interface import GOAL_CATEGORIES, ConfigError
+from sim.core.interface import GOAL_CATEGORIES
 from sim.core.paths import assets_dir
 from sim.episodes.episode import Episode
 from sim.episodes.reachable_goals import storeys_of
@@ -96,8 +96,6 @@ class HouseDifficulty:
 
 def main(args: Args) -> int:
     """Prints and writes the table."""
-    if args.workers < 1 or (args.episodes is not None and args.episodes < 1):
-        raise ConfigError("--workers and --episodes must be at least 1.")
     figures = {name: difficulty_of(name, args) for name in args.splits}
     page = HEADER + "".join(_row(name, houses) for name, houses in figures.items()) + "\n" + _goals(figures)
     if args.published:

@@ -8,7 +8,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import msgspec
 import numpy as np
@@ -37,8 +37,6 @@ from sim.task.result import EpisodeMetrics, ModelUse, RolloutResult, failed_metr
 from sim.task.trajectory import Recording, trajectory_file, write_trajectory
 
 T = TypeVar("T")
-OnStep = Callable[[int, Agent, dict[str, Any]], None]
-"""Called with the number of the step, the agent and the environment's info after each step."""
 
 
 def play_episode(
@@ -48,7 +46,6 @@ def play_episode(
     *,
     seed: int,
     seed_of_agent: int | None = None,
-    on_step: OnStep | None = None,
     viewers: Sequence[Viewer] = (),
     name: str | None = None,
 ) -> RolloutResult:
@@ -60,7 +57,6 @@ def play_episode(
         episode: the episode.
         seed: seed of the environment.
         seed_of_agent: seed of the agent; None: that of the environment.
-        on_step: called after each step.
         viewers: informed of each step; they change nothing.
         name: the agent's name in messages; that of its class when None.
 
@@ -79,7 +75,7 @@ def play_episode(
     for viewer in viewers:
         viewer.begin(env)
     began_s = time.perf_counter()
-    running = _RunningEpisode(env, agent, name, on_step, viewers, observation, seed_of_agent)
+    running = _RunningEpisode(env, agent, name, viewers, observation, seed_of_agent)
     while not running.done:
         running.step()
     wall_time_s = time.perf_counter() - began_s
@@ -96,7 +92,6 @@ class _RunningEpisode:
     env: ObjectNavEnv
     agent: Agent
     name: str
-    on_step: OnStep | None
     viewers: Sequence[Viewer]
     observation: Observation
     seed: int
@@ -136,8 +131,6 @@ class _RunningEpisode:
         self.steps += 1
         count_steps(self.steps)
         self.done = terminated or truncated
-        if self.on_step is not None:
-            self.on_step(self.steps, self.agent, info)
         for viewer in self.viewers:
             viewer.moved(info)
         task = self.env.scene.task

@@ -42,7 +42,6 @@ class Chart:
     """Text at the upper end of the axis, which begins at 0."""
     half: str
     """Text at its middle."""
-    floor_y: int = HEIGHT - BOTTOM
 
     @property
     def line(self) -> str:

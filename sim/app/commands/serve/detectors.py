@@ -10,13 +10,11 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
 from msgspec import Meta
 
-from sim.app import cli
 from sim.app.analysis import display
 from sim.app.services.detectors import Source, make_detector
 from sim.app.services.hosting import listen, require_web, show_errors_in_one_line
@@ -56,8 +54,3 @@ def main(args: Args) -> int:
     with contextlib.suppress(KeyboardInterrupt):
         uvicorn.Server(config).run(sockets=sockets)
     return 0
-
-
-def entry(argv: Sequence[str] | None = None) -> int:
-    """Runs the command line; returns its exit status."""
-    return cli.run(Args, main, argv)

@@ -21,7 +21,7 @@ from sim.app.analysis.report.distributions import (
     spl_histogram,
 )
 from sim.app.analysis.report.figures import grouped, proportion_of
-from sim.app.analysis.report.trend import HEIGHT, METRICS, TOP, trend
+from sim.app.analysis.report.trend import BOTTOM, HEIGHT, METRICS, TOP, trend
 from sim.task.result import EpisodeResult
 from tests.helpers.results import a_goal, a_result
 
@@ -128,7 +128,7 @@ def test_a_trend_shows_each_run_in_order_within_the_chart() -> None:
     points = charts[-1].points
     assert [point.label for point in points] == ["A", "B", "C"]
     assert points[0].x < points[1].x < points[2].x
-    assert points[1].y < points[2].y < points[0].y == charts[-1].floor_y  # more collisions are higher
+    assert points[1].y < points[2].y < points[0].y == HEIGHT - BOTTOM  # more collisions are higher
     for point in points:
         assert TOP <= point.high_y <= point.y <= point.low_y <= HEIGHT
     assert float(charts[-1].top) >= 30.0

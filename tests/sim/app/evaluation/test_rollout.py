@@ -163,11 +163,11 @@ def test_a_stop_target_that_breaks_names_agent_and_step(env: ObjectNavEnv) -> No
 
 
 def test_a_state_that_is_not_finite_ends_the_episode_as_an_error_that_names_house_and_step(env: ObjectNavEnv) -> None:
-    def break_it(step: int, agent: object, info: dict) -> None:
+    def break_it(step: int) -> None:
         if step == 2:
             env.scene.world.data.qvel[:] = np.nan
 
-    line = play_episode(env, Script([Action.MOVE_FORWARD] * 5), EPISODE, seed=0, on_step=break_it)
+    line = play_episode(env, Script([Action.MOVE_FORWARD] * 5, break_it), EPISODE, seed=0)
     assert line.end_reason == "error"
     assert line.success == 0.0
     assert line.failure == "misc"
@@ -176,13 +176,13 @@ def test_a_state_that_is_not_finite_ends_the_episode_as_an_error_that_names_hous
 
 
 def test_a_broken_episode_does_not_change_the_next_one(env: ObjectNavEnv) -> None:
-    def break_it(step: int, agent: object, info: dict) -> None:
-        env.scene.world.data.qvel[:] = np.nan
+    def break_it(step: int) -> None:
+        if step == 1:
+            env.scene.world.data.qvel[:] = np.nan
 
-    script = Script([Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP])
-    before, _, after = (
-        play_episode(env, script, EPISODE, seed=0, on_step=on_step) for on_step in (None, break_it, None)
-    )
+    actions = [Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP]
+    scripts = Script(actions), Script(actions, break_it), Script(actions)
+    before, _, after = (play_episode(env, script, EPISODE, seed=0) for script in scripts)
     assert before.without_times() == after.without_times()
 
 

@@ -43,13 +43,19 @@ STANDARD = get_typestore(Stores.ROS2_JAZZY)
 
 
 class Scripted:
-    """Carries out a list of actions and keeps its observations."""
+    """Carries out a list of actions and keeps its observations and, with an environment, the true poses."""
+
+    def __init__(self, env: ObjectNavEnv | None = None) -> None:
+        self.env = env
 
     def reset(self, goal: str, seed: int) -> None:
         self.seen: list[Observation] = []
+        self.poses: list[Pose] = []
 
     def act(self, observation: Observation) -> Action:
         self.seen.append({name: np.array(value) for name, value in observation.items()})
+        if self.env is not None:
+            self.poses.append(self.env.scene.world.pose)
         return ACTIONS[len(self.seen) - 1]
 
 
@@ -65,17 +71,13 @@ def make_env(house: Path, **options: Any) -> ObjectNavEnv:
 
 
 @pytest.fixture(scope="module")
-def recorded(house: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Scripted, RolloutResult, list]:
-    """A recording with the agent that made it, the result of the episode and the true poses."""
-    run, env, agent = tmp_path_factory.mktemp("run"), make_env(house), Scripted()
-    episode = Episode("an episode/1", "sofa_room", "sofa", START, 1.0)
-    poses = [START]
-    line = play_episode(
-        env, agent, episode, seed=0, viewers=[McapLog(run)],
-        on_step=lambda *_: poses.append(env.scene.world.pose),
-    )  # fmt: skip
+def recorded(house: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Scripted, RolloutResult]:
+    """A recording with the agent that made it and the result of the episode."""
+    run, env = tmp_path_factory.mktemp("run"), make_env(house)
+    agent, episode = Scripted(env), Episode("an episode/1", "sofa_room", "sofa", START, 1.0)
+    line = play_episode(env, agent, episode, seed=0, viewers=[McapLog(run)])
     env.close()
-    return mcap_file(run, episode.episode_id), agent, line, poses
+    return mcap_file(run, episode.episode_id), agent, line
 
 
 @pytest.fixture(scope="module")
@@ -141,10 +143,10 @@ def test_rays_without_a_return_are_infinite() -> None:
 def test_frames_lead_from_the_map_to_the_true_pose_and_odometry_is_what_was_believed(
     recorded: tuple, read: dict[str, list]
 ) -> None:
-    _, agent, _, poses = recorded
+    _, agent, _ = recorded
     fixed = read["/tf_static"][0][1]
     for (_, tree), (_, odometry), (_, located), seen, pose in zip(
-        read["/tf"], read["/odom"], read["/pose"], agent.seen, poses, strict=False
+        read["/tf"], read["/odom"], read["/pose"], agent.seen, agent.poses, strict=False
     ):
         frames = {transform.child_frame_id: transform for transform in tree.transforms + fixed.transforms}
         parents = {name: transform.header.frame_id for name, transform in frames.items()}
@@ -226,7 +228,7 @@ def test_commands_are_the_velocities_of_the_actions(read: dict[str, list]) -> No
 def test_metadata_has_the_episode_and_its_result(recorded: tuple) -> None:
     from mcap.reader import make_reader
 
-    file, _, line, _ = recorded
+    file, _, line = recorded
     with file.open("rb") as stream:
         metadata = {record.name: record.metadata for record in make_reader(stream).iter_metadata()}
     assert metadata["episode"]["episode_id"] == '"an episode/1"'

@@ -145,22 +145,23 @@ def test_a_video_plays_in_a_browser_to_its_end_and_can_be_searched(env: ObjectNa
 
 
 def test_an_episode_that_breaks_leaves_its_video_too(env: ObjectNavEnv, tmp_path: Path) -> None:
-    def break_it(step: int, agent: object, info: dict) -> None:
+    def break_it(step: int) -> None:
         if step == 2:
             env.scene.world.data.qvel[:] = np.nan
 
-    line = play_episode(env, Script(AHEAD), EPISODE, seed=0, on_step=break_it, viewers=[VideoRecorder(tmp_path)])
+    line = play_episode(env, Script(AHEAD, break_it), EPISODE, seed=0, viewers=[VideoRecorder(tmp_path)])
     assert line.end_reason == "error"
     assert len(frames_of(video_file(tmp_path, EPISODE.episode_id))) == 2 + video.END_FRAMES
 
 
 def test_an_episode_that_is_not_ended_leaves_nothing(env: ObjectNavEnv, tmp_path: Path) -> None:
-    def interrupt(step: int, agent: object, info: dict) -> None:
-        raise KeyboardInterrupt
+    def interrupt(step: int) -> None:
+        if step == 1:
+            raise KeyboardInterrupt
 
     recorder = VideoRecorder(tmp_path)
     with pytest.raises(KeyboardInterrupt):
-        play_episode(env, Script(AHEAD), EPISODE, seed=0, on_step=interrupt, viewers=[recorder])
+        play_episode(env, Script(AHEAD, interrupt), EPISODE, seed=0, viewers=[recorder])
     recorder.close()
     assert list((tmp_path / "videos").iterdir()) == []
 
