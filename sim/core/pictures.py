@@ -10,7 +10,7 @@ import contextlib
 import io
 import struct
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, BinaryIO, NamedTuple
 
 import cv2
@@ -123,6 +123,18 @@ def limited_pillow(refused: Callable[[str], None]) -> Iterator[None]:
             yield
         finally:
             PIL.Image.open = original
+
+
+def tiled(pictures: Sequence[NDArray[np.uint8]], columns: int) -> NDArray[np.uint8]:
+    """Returns one picture that shows pictures of the same size (h, w, 3) in a grid, row by row.
+
+    Raises:
+        ConfigError: the list is empty.
+    """
+    if not pictures:
+        raise ConfigError("There are no pictures to show.")
+    tiles = [*pictures, *[np.full_like(pictures[0], 255)] * (-len(pictures) % columns)]
+    return np.vstack([np.hstack(tiles[i : i + columns]) for i in range(0, len(tiles), columns)])
 
 
 def _require_size(width_px: int, height_px: int, where: str, error: type[ObjectNavError]) -> None:

@@ -36,9 +36,10 @@ from sim.app import cli
 from sim.app.analysis import display
 from sim.app.services.words import COCO as CLASSES
 from sim.core.errors import ConfigError
-from sim.core.files import write_atomically
+from sim.core.files import write_atomically, write_picture
 from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
+from sim.core.pictures import tiled
 from sim.core.reading import read_json
 from sim.env.scene import Scene
 from sim.episodes.splits import load_split
@@ -387,11 +388,7 @@ def write_sheets(folder: Path, tiles: Mapping[str, Sequence[Tile]]) -> None:
     columns, rows = TILES
     for name, of_name in tiles.items():
         spread = np.linspace(0, len(of_name) - 1, min(columns * rows, len(of_name))).round().astype(int)
-        some = [of_name[i] for i in spread]
-        some += [np.zeros_like(some[0])] * (-len(some) % columns)
-        sheet = np.concatenate([np.concatenate(some[i : i + columns], 1) for i in range(0, len(some), columns)])
-        encoded = cv2.imencode(".png", sheet[..., ::-1])[1]
-        write_atomically(folder / f"{name.replace(' ', '_')}.png", encoded.tobytes())
+        write_picture(folder / f"{name.replace(' ', '_')}.png", tiled([of_name[i] for i in spread], columns))
 
 
 def _tile(image: NDArray[np.uint8], box: Box, text: str) -> Tile:

@@ -26,13 +26,13 @@ from sim.app.viewers.house_pictures import (
     draw_views,
     render,
     storeys,
-    tiled,
     titled,
 )
 from sim.app.viewers.text import BOLD, write
 from sim.core.files import write_picture
 from sim.core.interface import ConfigError
 from sim.core.paths import assets_dir
+from sim.core.pictures import tiled
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.catalogue import Catalogue, Style
 from sim.homes.housegen.furniture.item import Geom, Item, Look, Pool

@@ -16,6 +16,7 @@ from sim.app.viewers.palette import PALETTE
 from sim.app.viewers.text import BOLD, text_width, write
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel
+from sim.core.pictures import tiled
 from sim.gl import mujoco
 from sim.houses.geoms import data_at_rest
 from sim.houses.house import House, Room, read_rooms
@@ -396,13 +397,6 @@ def render(
         return renderer.render().copy()
     finally:
         renderer.close()
-
-
-def tiled(tiles: list[Picture], columns: int) -> Picture:
-    """Returns pictures of the same size in rows, (h, w, 3) RGB."""
-    blank = np.full_like(tiles[0], 255)
-    tiles = tiles + [blank] * (-len(tiles) % columns)
-    return np.vstack([np.hstack(tiles[i : i + columns]) for i in range(0, len(tiles), columns)])
 
 
 def titled(picture: Picture, title: str) -> Picture:

@@ -407,13 +407,3 @@ def _with_extras(file: Path, view: LabelledView, parts: dict[str, bytes]) -> Lab
 
 def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) -> Shaped[np.ndarray, "h w *channels"]:
     return decode_picture(parts[part], flag, where=f"Shard '{file}': the {part} image of view '{key}'")
-
-
-def tile(pictures: Sequence[UInt8[np.ndarray, "h w 3"]], columns: int) -> UInt8[np.ndarray, "rows cols 3"]:
-    """Returns one picture that shows pictures of the same size in a grid, row by row."""
-    height, width = pictures[0].shape[:2]
-    sheet = np.full((math.ceil(len(pictures) / columns) * height, columns * width, 3), 255, np.uint8)
-    for i, picture in enumerate(pictures):
-        row, col = divmod(i, columns)
-        sheet[row * height : (row + 1) * height, col * width : (col + 1) * width] = picture
-    return sheet

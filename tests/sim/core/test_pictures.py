@@ -56,6 +56,15 @@ def test_pillow_opens_only_these_formats_and_sizes_while_it_is_limited(monkeypat
 
 
 @pytest.mark.costly
+def test_tiled_pictures_are_in_row_order() -> None:
+    sheet = pictures.tiled([np.full((2, 3, 3), i, np.uint8) for i in range(5)], columns=2)
+    assert sheet.shape == (6, 6, 3)
+    assert sheet[2, 3, 0] == 3
+    assert sheet[5, 5, 0] == 255
+    with pytest.raises(ConfigError, match="no pictures"):
+        pictures.tiled([], columns=0)
+
+
 def test_pictures_are_decoded_in_one_place() -> None:
     found = {
         str(file.relative_to(ROOT))

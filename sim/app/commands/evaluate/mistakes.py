@@ -34,12 +34,12 @@ from sim.core.configuration import with_fields
 from sim.core.files import write_picture
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40, CameraModel, ConfigError
+from sim.core.pictures import tiled
 from sim.renderer.camera import Camera
 from sim.robot.config import RobotConfig
 from sim.task.failures import CAUSES
 from sim.task.result import EpisodeResult
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
-from sim.training.segmentation.dataset import tile
 from sim.world.world import World
 from stubborn.segmentation.network import NetworkSegmenter
 
@@ -87,7 +87,7 @@ def main(args: Args) -> int:
         about = f"{result.episode_id} {result.goal}, step {step}: {words}"
         print(about)
         rows.append(_captioned(row, about))
-    write_picture(args.out, np.vstack([_headings(rows[0].shape[1]), tile(rows, columns=1)], dtype=np.uint8))
+    write_picture(args.out, np.vstack([_headings(rows[0].shape[1]), tiled(rows, columns=1)], dtype=np.uint8))
     of = f" of {available} (--count {available} draws all)" if available > len(rows) else ""
     drawn = f"{counted(len(rows), 'episode')}{of} that failed by {args.cause}, in {args.out}."
     print(f"{drawn}{_others(recorded, args.cause)}")

@@ -25,7 +25,8 @@ from sim.app.composition.segmenters import weights_file
 from sim.app.viewers.palette import with_legend
 from sim.core.files import write_picture
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40
-from sim.training.segmentation.dataset import GOAL_IDS, LabelledView, list_shards, read_shard, stored_block_px, tile
+from sim.core.pictures import tiled
+from sim.training.segmentation.dataset import GOAL_IDS, LabelledView, list_shards, read_shard, stored_block_px
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.preprocess import padding, shrink
@@ -85,7 +86,7 @@ def main(args: Args) -> int:
         return 0
     for missed in chosen:
         print(f"{missed.view.key}: {missed.category}, {missed.missed_px} px missed, mostly as {missed.taken_for}")
-    write_picture(args.out, tile([draw(missed) for missed in chosen], columns=1))
+    write_picture(args.out, tiled([draw(missed) for missed in chosen], columns=1))
     print(f"{len(chosen)} objects in {args.out}")
     return 0
 

@@ -20,7 +20,8 @@ from sim.app import cli
 from sim.app.viewers.palette import with_legend
 from sim.app.viewers.text import write
 from sim.core.files import write_picture
-from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard, tile
+from sim.core.pictures import tiled
+from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard
 from sim.training.views.coco import decode_mask
 from sim.training.views.normals import encode_normals
 
@@ -55,7 +56,7 @@ def main(args: Args) -> int:
         share = -(-(args.count - len(views)) // (len(picked) - number))
         views += [in_shard[i] for i in rng.permutation(len(in_shard))[:share]]
     rows = [draw(view) for view in views]
-    write_picture(args.out, tile(rows, columns=2 if rows[0].shape[1] <= 3 * WIDTH_PX else 1))
+    write_picture(args.out, tiled(rows, columns=2 if rows and rows[0].shape[1] <= 3 * WIDTH_PX else 1))
     print(f"{len(views)} views in {args.out}")
     return 0
 

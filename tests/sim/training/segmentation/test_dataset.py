@@ -22,7 +22,6 @@ from sim.training.segmentation.dataset import (
     read_shard,
     spread_views,
     stored_block_px,
-    tile,
 )
 
 
@@ -100,13 +99,6 @@ def test_a_truncated_shard_and_an_unknown_category_are_named(tmp_path: Path) -> 
         list(read_shard(tmp_path / "strange.tar"))
     with pytest.raises(ConfigError, match="No shards"):
         list_shards(tmp_path / "nowhere")
-
-
-def test_tiled_pictures_are_in_row_order() -> None:
-    sheet = tile([np.full((2, 3, 3), i, np.uint8) for i in range(5)], columns=2)
-    assert sheet.shape == (6, 6, 3)
-    assert sheet[2, 3, 0] == 3
-    assert sheet[5, 5, 0] == 255
 
 
 def test_the_factor_of_stored_views_is_read_from_their_notes(tmp_path: Path) -> None:
