@@ -1,4 +1,4 @@
-"""Reads runs, checks that they have the same episodes, and lists the fields in which their configurations differ.
+"""Reads runs, checks that they have the same episodes, and compares their results and their configurations.
 
 Two agents that ran the same episodes differ less by chance than their separate intervals suggest: houses, goals and
 starts are the same. So differences are taken in each episode (`sim.app.evaluation.intervals.paired_difference`).
@@ -12,15 +12,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim.app.analysis.metrics import difference_cell, difference_note, episodes_of, mean_cell
 from sim.app.analysis.tables import ResultTable
 from sim.app.evaluation.config_fields import ABSENT, differing_fields, field_text, run_differences
+from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.app.evaluation.results import RunRecord, read_record, read_results
 from sim.core.errors import ConfigError
-from sim.task.result import EpisodeResult
+from sim.task.result import EpisodeResult, metrics_for
 from sim.task.trajectory import read_trajectory, trajectory_file
 
 __all__ = [
-    "Run", "code_of", "differences_table", "differing_fields", "read_run",
+    "Run", "code_of", "compare", "differences_table", "differing_fields", "read_run",
     "require_same_episodes",
 ]  # fmt: skip
 
@@ -73,6 +75,46 @@ def code_of(run: Run, episode_id: str) -> str:
         recording = read_trajectory(file).about
         return "unknown" if recording is None else recording.versions.get("code", "unknown")
     return " or ".join(run.config.get("codes") or [str(run.config.get("versions", {}).get("code", "unknown"))])
+
+
+def compare(first: Run, second: Run) -> ResultTable:
+    """Returns the means of two runs and their paired differences, one row per metric.
+
+    Raises:
+        ConfigError: the runs are of different splits, or share no episode.
+    """
+    common = require_same_episodes(first, second)
+    a, b = ([of.results[i] for i in common] for of in (first, second))
+    episodes = len(set(episodes_of(a)))
+    against = {metric: difference_cell(metric, a, b) for metric in metrics_for([*a, *b])}
+    rows = [(metric.title, [mean_cell(metric, a), mean_cell(metric, b), cell]) for metric, cell in against.items()]
+    changed = [i for i in common if first.results[i].success != second.results[i].success]
+    notes = [
+        f"A: {first.path}, B: {second.path}; {episodes} episodes of both runs.",
+        f"not significant: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
+    ]
+    errors = [sum(result.is_error for result in results) for results in (a, b)]
+    if any(errors):
+        notes.append(
+            f"Ended with an error: {errors[0]} of A, {errors[1]} of B; they are failures, and other metrics omit them."
+        )
+    if note := difference_note(a, b):
+        notes.append(note)
+    broken = [x.is_error or y.is_error for x, y in zip(a, b, strict=True)]
+    whole = {episode for episode, is_broken in zip(episodes_of(a), broken, strict=True) if not is_broken}
+    pairs = {metric.title: cell.estimate.count for metric, cell in against.items()}
+    fewer = [f"{title} {count}" for title, count in pairs.items() if count < len(whole)]
+    if fewer:
+        notes.append(f"Differences of fewer episodes, because the others have no value: {', '.join(fewer)}.")
+    if changed:
+        lost = [i for i in changed if first.results[i].success > second.results[i].success]
+        gained = [i for i in changed if first.results[i].success < second.results[i].success]
+        chains = any(result.goals is not None for result in a)
+        for name, won in (("A", lost), ("B", gained)):
+            start = f"{name} reaches more goals in" if chains else f"Only {name} succeeds in"
+            notes.append(f"{start} {len(won)}: {' '.join(won) or '-'}.")
+    title = f"B - A, paired over {episodes} episodes"
+    return ResultTable("comparison", title, ("metric", "A", "B", "B - A"), rows, notes)
 
 
 def differences_table(first: Run, *others: Run) -> ResultTable:

@@ -17,12 +17,11 @@ import tyro
 
 from sim.app import cli
 from sim.app.analysis import display
-from sim.app.analysis.comparison import Run, differences_table, read_run, require_same_episodes
-from sim.app.analysis.metrics import SPL, SUCCESS, difference_cell, difference_note, episodes_of, mean_cell
-from sim.app.analysis.tables import NOT_SIGNIFICANT, ResultTable, to_csv, to_markdown, to_rich
+from sim.app.analysis.comparison import Run, compare, differences_table, read_run, require_same_episodes
+from sim.app.analysis.metrics import SPL, SUCCESS, difference_cell, episodes_of
+from sim.app.analysis.tables import NOT_SIGNIFICANT, to_csv, to_markdown, to_rich
 from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.core.files import write_together
-from sim.task.result import metrics_for
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,46 +49,6 @@ def main(args: Args) -> int:
         pages = {"comparison.md": page, "comparison.csv": to_csv(tables)}
         write_together({args.out / name: text for name, text in pages.items()})
     return 0
-
-
-def compare(first: Run, second: Run) -> ResultTable:
-    """Returns the means of two runs and their paired differences, one row per metric.
-
-    Raises:
-        ConfigError: the runs are of different splits, or share no episode.
-    """
-    common = require_same_episodes(first, second)
-    a, b = ([of.results[i] for i in common] for of in (first, second))
-    episodes = len(set(episodes_of(a)))
-    against = {metric: difference_cell(metric, a, b) for metric in metrics_for([*a, *b])}
-    rows = [(metric.title, [mean_cell(metric, a), mean_cell(metric, b), cell]) for metric, cell in against.items()]
-    changed = [i for i in common if first.results[i].success != second.results[i].success]
-    notes = [
-        f"A: {first.path}, B: {second.path}; {episodes} episodes of both runs.",
-        f"not significant: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
-    ]
-    errors = [sum(result.is_error for result in results) for results in (a, b)]
-    if any(errors):
-        notes.append(
-            f"Ended with an error: {errors[0]} of A, {errors[1]} of B; they are failures, and other metrics omit them."
-        )
-    if note := difference_note(a, b):
-        notes.append(note)
-    broken = [x.is_error or y.is_error for x, y in zip(a, b, strict=True)]
-    whole = {episode for episode, is_broken in zip(episodes_of(a), broken, strict=True) if not is_broken}
-    pairs = {metric.title: cell.estimate.count for metric, cell in against.items()}
-    fewer = [f"{title} {count}" for title, count in pairs.items() if count < len(whole)]
-    if fewer:
-        notes.append(f"Differences of fewer episodes, because the others have no value: {', '.join(fewer)}.")
-    if changed:
-        lost = [i for i in changed if first.results[i].success > second.results[i].success]
-        gained = [i for i in changed if first.results[i].success < second.results[i].success]
-        chains = any(result.goals is not None for result in a)
-        for name, won in (("A", lost), ("B", gained)):
-            start = f"{name} reaches more goals in" if chains else f"Only {name} succeeds in"
-            notes.append(f"{start} {len(won)}: {' '.join(won) or '-'}.")
-    title = f"B - A, paired over {episodes} episodes"
-    return ResultTable("comparison", title, ("metric", "A", "B", "B - A"), rows, notes)
 
 
 def verdict(first: Run, second: Run) -> str:

@@ -12,11 +12,11 @@ import shutil
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from sim.app.analysis.comparison import Run, differences_table, require_same_episodes
-from sim.app.analysis.metrics import difference_cell, episodes_of, mean_cell
+from sim.app.analysis.comparison import Run, compare, differences_table
 from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.evaluation.last_view import picture_file
 from sim.app.evaluation.results import read_record, read_results, segmentation_of
@@ -25,7 +25,7 @@ from sim.core import invocation
 from sim.core.errors import ConfigError
 from sim.core.files import open_to_grow
 from sim.core.reading import printable, reason_of
-from sim.task.result import EpisodeResult, metrics_for
+from sim.task.result import EpisodeResult
 
 MAX_RUNS = 100
 """Largest number of runs that are listed, the newest ones."""
@@ -174,19 +174,13 @@ class Runs:
     def comparison(self, first: str, second: str) -> list[dict[str, object]]:
         """Returns the paired differences of two runs, and the fields in which their configurations differ, as tables.
 
+        Tables and messages name the runs as the page does, without the folder of the runs.
+
         Raises:
             ConfigError: there are no such runs, or they share no episode.
         """
-        a, b = self.run(first), self.run(second)
-        common = require_same_episodes(a, b)
-        lines = [[run.results[episode_id] for episode_id in common] for run in (a, b)]
-        rows = [
-            (metric.title, [mean_cell(metric, lines[0]), mean_cell(metric, lines[1]), difference_cell(metric, *lines)])
-            for metric in metrics_for([*lines[0], *lines[1]])
-        ]
-        title = f"B - A, paired over {len(set(episodes_of(lines[0])))} episodes of both"
-        means = ResultTable("comparison", title, ("metric", f"A: {first}", f"B: {second}", "B - A"), rows)
-        return [_table_as_json(table) for table in (means, differences_table(a, b))]
+        a, b = (replace(self.run(name), path=Path(name)) for name in (first, second))
+        return [_table_as_json(table) for table in (compare(a, b), differences_table(a, b))]
 
     def _newest(self) -> list[tuple[int, Path]]:
         return sorted(self._found(), reverse=True)[:MAX_RUNS]

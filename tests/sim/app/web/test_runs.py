@@ -105,6 +105,16 @@ def test_a_run_that_goes_on_is_read_again_and_an_unchanged_one_is_not(tmp_path: 
     assert [episode["episode_id"] for episode in runs.episodes("run")] == ["e/0", "e/1"]
 
 
+def test_a_comparison_has_the_notes_of_the_command_and_names_the_runs_by_their_folders(tmp_path: Path) -> None:
+    write_run(tmp_path / "one")
+    write_run(tmp_path / "two", LINE | {"success": 0.0, "spl": 0.0, "end_reason": "error", "error": "it broke"})
+    means, _ = Runs(tmp_path).comparison("one", "two")
+    notes = means["notes"]
+    assert isinstance(notes, list)
+    assert notes[0] == "A: one, B: two; 1 episodes of both runs."
+    assert notes[2].startswith("Ended with an error: 0 of A, 1 of B")
+
+
 def test_a_folder_that_does_not_exist_holds_no_run(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     assert Runs(tmp_path / "none").as_json() == Runs(tmp_path / "file").as_json() == []
