@@ -13,7 +13,7 @@ from typing import Any
 
 from sim.app.commands import verify
 from sim.app.commands.run import entry
-from sim.app.submissions.audit import Checked, Choices, check, verdicts
+from sim.app.submissions.audit import AuditOptions, Checked, check, verdicts
 from sim.app.submissions.verdicts import Verdict
 from sim.core.geometry.pose import Pose
 from sim.episodes.episode import Episode
@@ -61,9 +61,9 @@ def written(file: Path, content: Any) -> Path:
     return file
 
 
-def checked(folder: Path, file: Path, **changes: Any) -> tuple[Checked, Choices]:
-    choices = replace(Choices(split=folder / "tiny", draw_seed=1, frames=0.0, nonstandard=True), **changes)
-    return check(file, choices, verify.truth_of_agents()), choices
+def checked(folder: Path, file: Path, **changes: Any) -> tuple[Checked, AuditOptions]:
+    options = replace(AuditOptions(split=folder / "tiny", draw_seed=1, frames=0.0, nonstandard=True), **changes)
+    return check(file, options, verify.truth_of_agents()), options
 
 
 def judged(folder: Path, file: Path, **changes: Any) -> list[Verdict]:

@@ -24,7 +24,7 @@ from sim.app.analysis.tables import to_markdown
 from sim.app.commands.verify import audit, truth_of_agents
 from sim.app.composition.agents import SPECS
 from sim.app.composition.driven import HUMAN_NAME
-from sim.app.submissions.audit import Choices, check
+from sim.app.submissions.audit import AuditOptions, check
 from sim.app.submissions.contents import read_submission
 from sim.app.submissions.leaderboard import (
     Row,
@@ -88,8 +88,8 @@ def _row(args: Args, file: Path) -> Row:
     """
     name = read_submission(file).manifest.split.name
     folder = next((split for split in args.splits if split.resolve().name == name), None)
-    choices = Choices(split=folder, draw_seed=secrets.randbits(32), workers=args.workers)
-    checked = check(file, choices, truth_of_agents())
+    options = AuditOptions(split=folder, draw_seed=secrets.randbits(32), workers=args.workers)
+    checked = check(file, options, truth_of_agents())
     shipped = frozenset((*SPECS, HUMAN_NAME))
     refusal = refusal_before_replay(checked.submission, checked.is_first, checked.changes, shipped)
     if refusal:
@@ -98,10 +98,10 @@ def _row(args: Args, file: Path) -> Row:
     if kept.is_file() and not args.again:
         with contextlib.suppress(ConfigError):  # of another form: it is written again
             report = read_report(kept)
-    if report is None or not is_of(report, checked, choices.tolerance_m):
+    if report is None or not is_of(report, checked, options.tolerance_m):
         print(f"Verifying {file.name}.")
         kept.parent.mkdir(parents=True, exist_ok=True)
-        write_atomically(kept, json.dumps(audit(file, choices), indent=2) + "\n")
+        write_atomically(kept, json.dumps(audit(file, options), indent=2) + "\n")
         report = read_report(kept)
     write_atomically(report_file(args.folder, file), read_text(kept, what="Report"))
     return Row(file, checked.submission, report, shipped)

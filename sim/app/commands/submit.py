@@ -18,7 +18,7 @@ import tyro
 from sim.app import cli
 from sim.app.analysis.comparison import read_run
 from sim.app.evaluation.results import segmentation_of
-from sim.app.submissions.checks import PLACES, isolation_of, truth_of
+from sim.app.submissions.checks import PLACES, isolation_text, truth_of
 from sim.app.submissions.contents import SUFFIX, write_submission
 from sim.app.submissions.leaderboard import MIN_EPISODES
 from sim.app.submissions.packing import About, pack
@@ -53,7 +53,7 @@ def main(args: Args) -> int:
     submission = pack(read_run(args.run), about)
     size = write_submission(out, submission)
     inputs, count = submission.manifest.inputs, len(submission.episodes)
-    isolated = PLACES[isolation_of(inputs)]
+    isolated = PLACES[isolation_text(inputs)]
     print(f"{out}: {count} episodes of {submission.manifest.split.name}, {size / 1000:.0f} KB.")
     segmentation = segmentation_of(submission.config_tree(where=str(out)))
     print(

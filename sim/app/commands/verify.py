@@ -30,8 +30,8 @@ import tyro
 from sim.app import cli
 from sim.app.analysis.metrics import SPL, SUCCESS, mean_cell
 from sim.app.composition.agents import SPECS
-from sim.app.submissions.audit import FRAMES, Checked, Choices, check, counts, verdicts
-from sim.app.submissions.checks import PLACES, isolation_of, truth_of
+from sim.app.submissions.audit import FRAMES, AuditOptions, Checked, check, counts, verdicts
+from sim.app.submissions.checks import PLACES, isolation_text, truth_of
 from sim.app.submissions.leaderboard import results_of
 from sim.app.submissions.report import report_of
 from sim.app.submissions.verdicts import TOLERANCE_M, Verdict
@@ -70,7 +70,7 @@ def main(args: Args) -> int:
     """Verifies the file, prints every episode and a summary; returns the exit status."""
     if args.tolerance_m > MAX_TOLERANCE_M:
         raise ConfigError(f"--tolerance-m must be at most {MAX_TOLERANCE_M:g} m, got {args.tolerance_m:g} m.")
-    choices = Choices(
+    options = AuditOptions(
         split=args.split,
         frames=args.frames,
         draw_seed=secrets.randbits(32) if args.draw_seed is None else args.draw_seed,
@@ -78,26 +78,26 @@ def main(args: Args) -> int:
         workers=args.workers,
         nonstandard=args.nonstandard,
     )
-    report = audit(args.file, choices)
+    report = audit(args.file, options)
     if args.report is not None:
         write_atomically(args.report, json.dumps(report, indent=2) + "\n")
     return int(report["different"] != 0)
 
 
-def audit(file: Path, choices: Choices) -> Mapping[str, object]:
+def audit(file: Path, options: AuditOptions) -> Mapping[str, object]:
     """Verifies a submission, prints the outcome, and returns it as JSON (`sim.app.submissions.report`)."""
-    checked = check(file, choices, truth_of_agents())
+    checked = check(file, options, truth_of_agents())
     for line in _head(checked):
         print(printable(line), flush=True)
     outcome: list[Verdict] = []
     seconds, total = 0.0, len(checked.submission.episodes)
-    for verdict, took_s in verdicts(checked, choices):
+    for verdict, took_s in verdicts(checked, options):
         outcome.append(verdict)
         print(printable(f"[{len(outcome)}/{total}] {_line(verdict)}"), flush=True)
         seconds += took_s
-    for line in _summary(checked, choices, outcome, seconds):
+    for line in _summary(checked, options, outcome, seconds):
         print(printable(line))
-    return report_of(checked, choices, outcome, seconds)
+    return report_of(checked, options, outcome, seconds)
 
 
 def truth_of_agents() -> Mapping[str, bool]:
@@ -125,7 +125,7 @@ def _line(verdict: Verdict) -> str:
     return f"{verdict.episode_id}: {verdict.judgement}{frames}{': ' + verdict.text if verdict.text else ''}."
 
 
-def _summary(checked: Checked, choices: Choices, outcome: list[Verdict], seconds: float) -> Iterator[str]:
+def _summary(checked: Checked, options: AuditOptions, outcome: list[Verdict], seconds: float) -> Iterator[str]:
     """Yields the lines after the episodes."""
     count, inputs = counts(outcome), checked.submission.manifest.inputs
     framed = sum(verdict.framed for verdict in outcome)
@@ -133,7 +133,7 @@ def _summary(checked: Checked, choices: Choices, outcome: list[Verdict], seconds
         f"{count[name]} {name}" for name in ("equal", "within tolerance", "different", "error") if count[name]
     )
     yield (
-        f"{len(outcome)} episodes: {by_judgement}. Frames of {framed} were rendered (--draw-seed {choices.draw_seed}). "
+        f"{len(outcome)} episodes: {by_judgement}. Frames of {framed} were rendered (--draw-seed {options.draw_seed}). "
         f"{_speed(len(outcome) - count['error'], seconds)}"
     )
     results = results_of(checked.submission)
@@ -151,7 +151,7 @@ def _summary(checked: Checked, choices: Choices, outcome: list[Verdict], seconds
     yield _known_paths(checked, outcome)
     yield (
         f"Declared by the authors; a replay cannot prove it: agent '{inputs.agent}' "
-        f"{PLACES[isolation_of(inputs)]}; segmentation {checked.segmentation}; ground truth {truth_of(inputs)}; "
+        f"{PLACES[isolation_text(inputs)]}; segmentation {checked.segmentation}; ground truth {truth_of(inputs)}; "
         f"sensors {', '.join(inputs.sensors) or 'none'}"
         f"{'; the seed, which has no effect on physics without noise' if inputs.noise == 'none' else ''}."
     )

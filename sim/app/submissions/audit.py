@@ -28,7 +28,7 @@ FRAMES = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
-class Choices:
+class AuditOptions:
     """How a submission is verified."""
 
     split: Path | None = None
@@ -65,12 +65,12 @@ class Checked:
     house_of: Mapping[str, str] = field(repr=False)
 
 
-def check(file: Path, choices: Choices, truth_of_agents: Mapping[str, bool]) -> Checked:
+def check(file: Path, options: AuditOptions, truth_of_agents: Mapping[str, bool]) -> Checked:
     """Returns a submission that passed all checks without a replay.
 
     Args:
         file: the submission.
-        choices: see `Choices`.
+        options: see `AuditOptions`.
         truth_of_agents: whether each agent that ships with the simulator uses ground truth.
 
     Raises:
@@ -80,19 +80,19 @@ def check(file: Path, choices: Choices, truth_of_agents: Mapping[str, bool]) -> 
     config = submission.config_tree(where=where)
     setting = setting_of(config, where=where)
     name = submission.manifest.split.name
-    if choices.split is None and name not in shipped_splits():
+    if options.split is None and name not in shipped_splits():
         raise ConfigError(
             f"{where} was made on the split '{name}', which does not ship; give its folder with --split. That of a "
             "sealed split is made after the deadline (`stubborn seal reveal`)."
         )
-    chosen = name if choices.split is None else str(choices.split)
+    chosen = name if options.split is None else str(options.split)
     split = load_split(chosen)
     require_consistent(submission, config, setting, split, where=where)
     inputs = submission.manifest.inputs
     if truth_of_agents.get(inputs.agent) and truth_of(inputs) != "yes":
         raise ConfigError(f"{where} declares no ground truth, and its agent '{inputs.agent}' uses it.")
     changes = setting.changes()
-    if changes and not choices.nonstandard:
+    if changes and not options.nonstandard:
         raise ConfigError(
             f"{where} was not made with the standard robot, camera, task and noise: {changes[0]}"
             f"{f', and {len(changes) - 1} more' if len(changes) > 1 else ''}; --nonstandard replays it all the same."
@@ -106,17 +106,17 @@ def check(file: Path, choices: Choices, truth_of_agents: Mapping[str, bool]) -> 
         is_first=is_first,
         covers=covers,
         changes=changes,
-        origin=origin_of(split, choices.split),
+        origin=origin_of(split, options.split),
         segmentation=segmentation_of(config),
         job=Job(split=chosen, setting=setting, seed=submission.manifest.seed),
         house_of={entry.result.episode_id: entry.result.house for entry in submission.episodes},
     )
 
 
-def verdicts(checked: Checked, choices: Choices) -> Iterator[tuple[Verdict, float]]:
+def verdicts(checked: Checked, options: AuditOptions) -> Iterator[tuple[Verdict, float]]:
     """Yields the verdict on each episode, house by house, and the seconds of processor time that its replay took."""
     entries = checked.submission.episodes
-    framed = drawn(entries, choices)
+    framed = drawn(entries, options)
     groups: dict[str, list[tuple[Entry, bool]]] = {}
     for entry in entries:
         if entry.result.is_error:
@@ -125,17 +125,17 @@ def verdicts(checked: Checked, choices: Choices) -> Iterator[tuple[Verdict, floa
             episode_id = entry.result.episode_id
             groups.setdefault(checked.house_of[episode_id], []).append((entry, episode_id in framed))
     work = list(groups.values())
-    replays = ordered_map(functools.partial(replay_house, checked.job), work, workers=choices.workers)
+    replays = ordered_map(functools.partial(replay_house, checked.job), work, workers=options.workers)
     for group, verdicts in zip(work, replays, strict=True):
         for (entry, _), replay in zip(group, verdicts, strict=True):
-            yield judge(entry, replay, tolerance_m=choices.tolerance_m), replay.seconds
+            yield judge(entry, replay, tolerance_m=options.tolerance_m), replay.seconds
 
 
-def drawn(entries: Sequence[Entry], choices: Choices) -> set[str]:
+def drawn(entries: Sequence[Entry], options: AuditOptions) -> set[str]:
     """Returns the ids of the episodes whose frames are rendered."""
     ids = sorted(entry.result.episode_id for entry in entries if not entry.result.is_error)
-    count = min(len(ids), math.ceil(choices.frames * len(ids)))
-    rng = np.random.default_rng(choices.draw_seed)
+    count = min(len(ids), math.ceil(options.frames * len(ids)))
+    rng = np.random.default_rng(options.draw_seed)
     return {ids[number] for number in rng.choice(len(ids), count, replace=False)} if count else set()
 
 

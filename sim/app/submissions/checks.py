@@ -87,10 +87,10 @@ PLACES = {
     "yes": "in a process of its own, as the same user",
     "namespace": "in a process of its own, in namespaces",
 }
-"""Where an agent ran, by `isolation_of`."""
+"""Where an agent ran, by `isolation_text`."""
 
 
-def isolation_of(inputs: Inputs) -> str:
+def isolation_text(inputs: Inputs) -> str:
     """Returns whether the agent ran in a process of its own, as the authors declare it: yes, no, or namespace."""
     return inputs.isolated if isinstance(inputs.isolated, str) else "yes" if inputs.isolated else "no"
 

@@ -17,7 +17,7 @@ import msgspec
 
 from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, episodes_of, mean_cell
 from sim.app.analysis.tables import Cell, ResultTable
-from sim.app.submissions.checks import isolation_of, truth_of
+from sim.app.submissions.checks import isolation_text, truth_of
 from sim.app.submissions.contents import SUFFIX, Submission
 from sim.app.submissions.report import Report
 from sim.app.submissions.sealing import Origin
@@ -207,7 +207,7 @@ def csv_of(rows: Sequence[Row]) -> str:
         numbers = (n for estimate in estimates for n in (estimate.mean, estimate.low, estimate.high))
         table.append([
             *_split(row), manifest.name, "; ".join(manifest.authors), " ".join(manifest.links), manifest.inputs.agent,
-            truth_of(manifest.inputs), isolation_of(manifest.inputs), manifest.inputs.noise, row.episodes,
+            truth_of(manifest.inputs), isolation_text(manifest.inputs), manifest.inputs.noise, row.episodes,
             *("" if n is None else round(n, 6) for n in numbers), _verified(row), row.report.origin,
             row.report.oracle_paths, row.report.shortest_paths, repeats[row.file.name], row.file.name,
         ])  # fmt: skip
@@ -236,7 +236,7 @@ def _cells(row: Row, repeats: int) -> list[Cell | str]:
 def _process(row: Row) -> str:
     """Returns whether the agent ran in a process of its own, else the name of the shipped agent that is declared."""
     inputs = row.submission.manifest.inputs
-    return isolation_of(inputs) if inputs.isolated else f"no, {inputs.agent}"
+    return isolation_text(inputs) if inputs.isolated else f"no, {inputs.agent}"
 
 
 def _letters(name: str) -> str:

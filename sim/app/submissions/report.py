@@ -12,7 +12,7 @@ from typing import Annotated
 
 import msgspec
 
-from sim.app.submissions.audit import Checked, Choices, counts
+from sim.app.submissions.audit import AuditOptions, Checked, counts
 from sim.app.submissions.sealing import Origin
 from sim.app.submissions.verdicts import Verdict
 from sim.core.paths import cache_dir, processor
@@ -44,7 +44,9 @@ class Report(msgspec.Struct):
     """Further successes on a path hardly longer than the shortest one (`sim.app.submissions.verdicts`)."""
 
 
-def report_of(checked: Checked, choices: Choices, verdicts: Sequence[Verdict], seconds: float) -> dict[str, object]:
+def report_of(
+    checked: Checked, options: AuditOptions, verdicts: Sequence[Verdict], seconds: float
+) -> dict[str, object]:
     """Returns the outcome of a verification; `seconds` of processor time were needed."""
     count = counts(verdicts)
     return {
@@ -58,11 +60,11 @@ def report_of(checked: Checked, choices: Choices, verdicts: Sequence[Verdict], s
         "frames": sum(verdict.framed for verdict in verdicts),
         "is_first": checked.is_first,
         "nonstandard": list(checked.changes),
-        "tolerance_m": choices.tolerance_m,
+        "tolerance_m": options.tolerance_m,
         "origin": checked.origin,
         "oracle_paths": sum(verdict.known_path == "oracle" for verdict in verdicts),
         "shortest_paths": sum(verdict.known_path == "shortest" for verdict in verdicts),
-        "draw_seed": choices.draw_seed,
+        "draw_seed": options.draw_seed,
         "processor": processor(),
         "seconds": round(seconds, 1),
         "remarks": [

@@ -20,7 +20,6 @@ from sim.app.bridges.habitat.conversions import CATEGORIES
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.files import write_together
 from sim.core.interface import MPCAT40_ID
-from sim.core.paths import assets_dir
 from sim.episodes import habitat
 from sim.episodes.goat import goat_house, ovon_house
 from sim.episodes.reachable_goals import find_reachable_goals
@@ -57,7 +56,6 @@ def main(args: Args) -> int:
         "category_to_task_category_id": {goal: number for number, goal in enumerate(goals)},
         "category_to_mp3d_category_id": {goal: MPCAT40_ID[goal] for goal in goals},
     }
-    is_shipped = args.split in shipped_splits()
     numbers = {episode.episode_id: number for number, episode in enumerate(split.episodes)}
     houses = [house for house in split.houses if any(episode.house == house for episode in split.episodes)]
     jobs = [(args.split, house) for house in houses]
@@ -66,7 +64,7 @@ def main(args: Args) -> int:
     }
     points = count = 0
     for house, listed in zip(houses, ordered_map(_goals, jobs, workers=args.workers), strict=True):
-        scene = f"stubborn/{args.split}/{house}.xml" if is_shipped else str(split.house_paths[house].resolve())
+        scene = _scene_of(args.split, split, house)
         episodes = [
             {
                 "episode_id": str(numbers[episode.episode_id]),
@@ -119,10 +117,9 @@ def _of_words(job: tuple[str, str, str]) -> dict[str, Any]:
 
 
 def _scene_of(name: str, split: Split, house: str) -> str:
-    """Returns the scene of a house: with the split that holds its file, or its path if that does not ship."""
+    """Returns the scene of a house: with the shipped split that holds its file, or the path of a file of the user."""
     file = split.house_paths[house].resolve()
-    is_shipped = name in shipped_splits() and file.parent.parent == assets_dir().resolve()
-    return f"stubborn/{file.parent.name}/{house}.xml" if is_shipped else str(file)
+    return f"stubborn/{file.parent.name}/{house}.xml" if name in shipped_splits() else str(file)
 
 
 def _start(start: Any) -> dict[str, list[float]]:

@@ -132,7 +132,7 @@ def test_the_leaderboard_has_the_rows_that_hold(
     assert (row["name"], row["authors"]) == ("Our <b>agent</b> [x](y) | z", "A. *Author*")
     assert (row["noise"], row["episodes"], row["verified"]) == ("harsh", "3", "equal")
     assert (row["ground_truth_declared"], row["own_process_declared"], row["success"]) == ("yes", "no", "0.0")
-    monkeypatch.setattr(leaderboard, "audit", lambda file, choices: pytest.fail("a current report was made again"))
+    monkeypatch.setattr(leaderboard, "audit", lambda file, options: pytest.fail("a current report was made again"))
     for name in ("forged", "chosen", "few", "broken"):
         (tmp_path / "submissions" / f"{name}.json.gz").unlink()
     assert leaderboard.main(args) == 0
@@ -280,7 +280,7 @@ def test_the_leaderboard_of_the_repository_is_that_of_its_files(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Each submission has a current report, and the tables are those of all of them."""
-    monkeypatch.setattr(leaderboard, "audit", lambda file, choices: pytest.fail(f"{file} has no current report"))
+    monkeypatch.setattr(leaderboard, "audit", lambda file, options: pytest.fail(f"{file} has no current report"))
     shipped = Path(__file__).parents[4] / "leaderboard"
     if any(read_report(file).physics != PHYSICS_VERSION for file in (shipped / "reports").iterdir()):
         pytest.skip("the rows are of an older version of the physics")
