@@ -115,8 +115,8 @@ def shortest_path(start: tuple, wanted: np.ndarray, blocked: np.ndarray) -> list
 
 
 def cell(place: np.ndarray) -> tuple:
-    """Returns column and row of a place, or of several places (2, n), in metres."""
-    return tuple(np.round(place / CELL_M).astype(int) + CELLS // 2)
+    """Returns column and row of a place, or of several places (2, n), in metres; the nearest ones of the map."""
+    return tuple(np.clip(np.round(place / CELL_M).astype(int) + CELLS // 2, 0, CELLS - 1))
 
 
 def make(*, camera: CameraModel, segmenter: Segmenter, **others: object) -> MapAgent:

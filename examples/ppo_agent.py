@@ -58,7 +58,7 @@ class Rays:
 class Bumper:
     """1 after an action that a contact stopped, else 0."""
 
-    name, images, reads, noise = "bumper", (), ("collided",), None
+    name, images, reads, noise = "blocked", (), ("collided",), None
 
     def space(self, camera: CameraModel) -> spaces.Box:
         """Returns the space of one float32."""

@@ -19,7 +19,10 @@ if __name__ == "__main__":
     overrides = [argument for argument in sys.argv[1:] if argument != "--evaluate"]
     if evaluate:
         os.environ["TORCH_FORCE_NO_WEIGHTS_ONLY_LOAD"] = "1"  # checkpoints of habitat-baselines hold its configuration
-        last = max(Path("habitat_ppo/checkpoints").glob("ckpt.*.pth"), key=lambda file: file.stat().st_mtime)
+        checkpoints = list(Path("habitat_ppo/checkpoints").glob("ckpt.*.pth"))
+        if not checkpoints:
+            sys.exit("error: habitat_ppo/checkpoints has no checkpoint: train first, without --evaluate.")
+        last = max(checkpoints, key=lambda file: file.stat().st_mtime)
         overrides = [
             "habitat_baselines.evaluate=True",
             f"habitat_baselines.eval_ckpt_path_dir={last}",  # of a folder, it would wait for further checkpoints

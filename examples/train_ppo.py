@@ -23,7 +23,6 @@ import gymnasium
 import numpy as np
 import torch
 from gymnasium.wrappers import FilterObservation, FlattenObservation
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import sim.gym
@@ -33,6 +32,7 @@ from sim.app import cli
 from sim.core.files import write_atomically
 
 try:
+    from matplotlib.figure import Figure
     from stable_baselines3 import PPO
     from stable_baselines3.common.callbacks import BaseCallback
     from stable_baselines3.common.monitor import Monitor
@@ -184,7 +184,7 @@ def main(args: Args) -> int:
     print(f"policy: {args.out / 'policy.zip'}")
     print(
         f"stubborn run --agent examples.ppo_agent:AGENT --config-file {shlex.quote(str(settings))} "
-        f"--house {HOUSE} --goal {GOAL} --video"
+        f"--house {shlex.quote(str(HOUSE))} --goal {GOAL} --video"
     )
     return 0
 

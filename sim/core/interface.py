@@ -48,6 +48,8 @@ class Action(enum.IntEnum):
 
 def as_action(value: object) -> Action | None:
     """Returns the action of an integer of any library, such as a tensor of PyTorch; None: it is no action."""
+    if isinstance(value, bool):
+        return None
     try:
         return Action(operator.index(value))  # type: ignore[arg-type]
     except (TypeError, ValueError, RuntimeError):

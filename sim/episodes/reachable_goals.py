@@ -15,6 +15,7 @@ from sim.task.footprints import Footprint
 from sim.task.objectnav import Task
 from sim.task.success import GoalRegion
 from sim.world.freespace import FreeSpace
+from sim.world.storeys import storey_floors
 
 VIEW_STEP_CELLS = 10
 """View points are this many cells of the free space apart: 0.25 m."""
@@ -35,11 +36,8 @@ class HouseGoals:
 
 def storeys_of(task: Task) -> tuple[float, ...]:
     """Returns the heights of the floors of a house's storeys, by its rooms, the lowest first; (0.0,) without rooms."""
-    heights: list[float] = []
-    for floor_z_m in sorted({round(room.floor_z_m, _DECIMALS) + 0.0 for room in task.world.rooms}):
-        if not heights or floor_z_m - heights[-1] >= task.config.success.same_storey_m:
-            heights.append(floor_z_m)
-    return tuple(heights) or (0.0,)
+    levels_m = sorted({round(room.floor_z_m, _DECIMALS) + 0.0 for room in task.world.rooms})
+    return tuple(storey_floors(levels_m, task.config.success.same_storey_m)) or (0.0,)
 
 
 def find_reachable_goals(

@@ -6,6 +6,12 @@ from dataclasses import dataclass
 
 from sim.core.errors import ConfigError
 
+_RANGES: dict[str, tuple[int, int]] = {
+    "samples": (0, 64), "slices": (3, 256), "stacks": (2, 256), "quads": (1, 64), "occlusion": (0, 1),
+    "shadows": (0, 1), "taps": (1, 256),
+}  # fmt: skip
+"""Smallest and largest value of each setting."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class RenderProfile:
@@ -28,6 +34,11 @@ class RenderProfile:
     """Strength of the soft shadows of the nearest lamp, 0 (off) to 1."""
     taps: int = 6
     """Samples of each point for occlusion, and for shadows (`sim.renderer.shading`)."""
+
+    def __post_init__(self) -> None:
+        for name, (low, high) in _RANGES.items():
+            if not low <= getattr(self, name) <= high:  # NaN is not
+                raise ConfigError(f"RenderProfile.{name} must be in [{low}, {high}], got {getattr(self, name)}.")
 
 
 PROFILES: dict[str, RenderProfile] = {

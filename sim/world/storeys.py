@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,11 +27,22 @@ def floor_levels(model: mujoco.MjModel, labels: Labels) -> tuple[float, ...]:
 
     A storey may have several levels; storeys are distinguished by `SuccessRule.same_storey_m`.
     """
-    floors: list[float] = []
-    for top in sorted(_floor_tops(model, labels).tolist()):
-        if not floors or top - floors[-1] >= LEVEL_M:
-            floors.append(top)
-    return tuple(floors) or (0.0,)
+    return tuple(storey_floors(sorted(_floor_tops(model, labels).tolist()), LEVEL_M)) or (0.0,)
+
+
+def storey_floors(levels_m: Iterable[float], apart_m: float) -> list[float]:
+    """Returns the height of the lowest level of each storey.
+
+    Args:
+        levels_m: heights of the levels, lowest first. A level less than `apart_m` above the lowest one of a storey
+            belongs to that storey.
+        apart_m: see `SuccessRule.same_storey_m`.
+    """
+    floors_m: list[float] = []
+    for level_m in levels_m:
+        if not floors_m or level_m - floors_m[-1] >= apart_m:
+            floors_m.append(level_m)
+    return floors_m
 
 
 def _floor_tops(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float64]:

@@ -61,6 +61,8 @@ class TargetConfig:
                 "TargetConfig needs 0 < viewpoint_m <= far_viewpoint_m <= pushing_m <= last_resort_m, "
                 f"got {self.viewpoint_m}, {self.far_viewpoint_m}, {self.pushing_m} and {self.last_resort_m} m."
             )
+        if self.margin_cells < 0:
+            raise ConfigError(f"TargetConfig.margin_cells must be >= 0, got {self.margin_cells}.")
         if not 0.0 <= self.outline_margin_m < min(self.viewpoint_m, self.stop_in_view_m):
             raise ConfigError(
                 "TargetConfig needs 0 <= outline_margin_m < viewpoint_m and stop_in_view_m, "

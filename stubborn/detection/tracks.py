@@ -73,6 +73,8 @@ class TrackConfig:
     def __post_init__(self) -> None:
         if not all(0.0 <= share <= 1.0 for share in (self.hot, self.same_share, self.merge_share, self.part_share)):
             raise ConfigError("TrackConfig needs hot, same_share, merge_share and part_share in [0, 1].")
+        if self.top_m <= 0.0:
+            raise ConfigError(f"TrackConfig.top_m must be > 0 m, got {self.top_m}.")
         if self.voxel_cells < 1 or not 2 <= self.most_tracks < 2**15:
             raise ConfigError(
                 f"TrackConfig needs voxel_cells >= 1 and most_tracks in [2, 32768), got {self.voxel_cells} and "

@@ -14,7 +14,7 @@ from typing import Annotated, Protocol, runtime_checkable
 
 import msgspec
 
-from sim.core.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
+from sim.core.interface import MPCAT40, ConfigError, SegmenterSpec
 from sim.core.reading import Number, convert, read_json
 from stubborn.detection.classifiers import Classifier, Features, NaiveBayes
 
@@ -127,8 +127,8 @@ class FittedVerifier:
 
     def probability(self, goal: str, features: Features) -> float:
         """Returns the probability in [0, 1] that a candidate for this goal is true."""
-        if goal not in GOAL_CATEGORIES:
-            raise ConfigError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
+        if goal not in MPCAT40:  # goals in words have categories that are no goals of ObjectNav
+            raise ConfigError(f"Unknown category '{goal}'. Available: {', '.join(MPCAT40)}.")
         return self.by_category.get(goal, self.pooled).probability(features)
 
     def accepts(self, goal: str, features: Features) -> bool:

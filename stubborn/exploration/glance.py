@@ -32,7 +32,7 @@ class GlanceConfig:
     """Parameters of the choice of a look."""
 
     gain_per_turn_m2: float = 0.75
-    """New area that a look must show for each of its turns (there and back); infinity: the robot never looks aside."""
+    """New area that a look must show for each of its turns (there and back); 1e9: the robot never looks aside."""
     range_m: float = 3.5
     """Ground farther away than this does not count."""
     not_again_within_m: float = 1.0
@@ -40,8 +40,8 @@ class GlanceConfig:
     again."""
 
     def __post_init__(self) -> None:
-        if self.range_m <= 0:
-            raise ConfigError(f"GlanceConfig.range_m must be > 0 m, got {self.range_m}.")
+        if self.range_m < 0.5:
+            raise ConfigError(f"GlanceConfig.range_m must be at least 0.5 m, got {self.range_m}.")
 
 
 class Glancer:

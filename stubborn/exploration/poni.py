@@ -62,6 +62,8 @@ class PoniConfig(PotentialConfig):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.piece_m <= 0.0:
+            raise ConfigError(f"PoniConfig.piece_m must be > 0 m, got {self.piece_m}.")
         if self.path_weight_per_m < 0.0:
             raise ConfigError(f"PoniConfig.path_weight_per_m must be >= 0, got {self.path_weight_per_m}.")
         if min(self.replan_steps, self.stalled_steps) < 1:

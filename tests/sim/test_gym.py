@@ -207,10 +207,10 @@ def test_the_example_of_ppo_sees_the_goal_from_the_robot_and_walls_as_near() -> 
     start = Pose(3.0, 2.5, -np.pi / 2)  # the sofa is 2.4 m to the left, the wall 2.5 m ahead
     env = train_ppo.make_env(9, start=start)
     observation, _ = env.reset(seed=0)
-    bumper, goal, scan = np.split(observation, [1, 4])  # by the names of the sensors
+    blocked, goal, scan = np.split(observation, [1, 4])  # by the names of the sensors
     np.testing.assert_allclose(goal, [2.4 / 5.0, 1.0, 0.0], atol=0.02)
     assert scan[7] == pytest.approx(2.5 / 5.0, abs=0.03)
-    assert bumper == 0.0
+    assert blocked == 0.0
     env.close()
 
 

@@ -65,13 +65,6 @@ def test_the_checksum_is_that_of_the_file(root: Path) -> None:
         assert (row["sha256"], row["kilobytes"]) == (hashlib.sha256(content).hexdigest(), f"{len(content) / 1000:.0f}")
 
 
-@pytest.mark.parametrize(
-    ("levels_m", "storeys"), [((0.0,), 1), ((-0.6, 0.0), 1), ((0.0, 2.9), 2), ((-0.6, 0.0, 2.9), 2)]
-)
-def test_levels_less_than_a_metre_apart_are_one_storey(levels_m: tuple[float, ...], storeys: int) -> None:
-    assert describe_houses.count_storeys(levels_m) == storeys
-
-
 def test_an_upper_floor_that_is_a_body_is_a_level() -> None:
     spec = room(8, 4).spec.copy()
     floor = spec.worldbody.add_body(name="floor_01", pos=(2.0, 0.0, 2.75))

@@ -27,7 +27,7 @@ from sim.homes.housegen.splits.recipes import SPLITS as RECIPES
 from sim.homes.housegen.splits.recipes import Recipe
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels, rendered_geoms
-from sim.world.storeys import floor_levels
+from sim.world.storeys import floor_levels, storey_floors
 
 SPLITS = ("val", "test", "large", "large-test", "hazards", "hazards-test", "train")
 TABLE_FILE = "houses.csv"
@@ -205,7 +205,7 @@ def describe(split: Split, name: str) -> HouseFacts:
         name=name,
         recipe=next((entry for entry in listed if isinstance(entry, Recipe) and entry.name == name), None),
         area_m2=sum(room.area_m2 for room in rooms),
-        storeys=count_storeys(floor_levels(model, labels)),
+        storeys=len(storey_floors(floor_levels(model, labels), SuccessRule.same_storey_m)),
         rooms=len(rooms),
         geoms=model.ngeom,
         rendered=int(rendered_geoms(model).sum()),
@@ -214,20 +214,6 @@ def describe(split: Split, name: str) -> HouseFacts:
         sha256=hashlib.sha256(content).hexdigest(),
         instances=collections.Counter(instance.category for instance in labels.instances),
     )
-
-
-def count_storeys(levels_m: Sequence[float]) -> int:
-    """Returns the number of storeys.
-
-    Args:
-        levels_m: heights of the levels, lowest first. A level less than `SuccessRule.same_storey_m` above the lowest
-            one of a storey belongs to that storey.
-    """
-    first_m = [levels_m[0]]
-    for level_m in levels_m:
-        if level_m - first_m[-1] >= SuccessRule.same_storey_m:
-            first_m.append(level_m)
-    return len(first_m)
 
 
 def _csv(root: Path, splits: Mapping[str, Split], facts: Mapping[str, Sequence[HouseFacts]]) -> str:

@@ -26,6 +26,7 @@ import numpy as np
 
 from sim.app import cli
 from sim.app.evaluation.parallel import ordered_map
+from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
 from sim.core.geometry.pose import Pose, wrap_angle
 from sim.core.interface import GOAL_CATEGORIES
@@ -119,6 +120,8 @@ def _measure(split_name: str, work: tuple[str, tuple[Episode, ...]]) -> HouseDif
     house, episodes = work
     split = load_split(split_name)
     folder = assets_dir() / split_name if split_name in shipped_splits() else Path(split_name)
+    if any(episode.goal not in GOAL_CATEGORIES or episode.goals for episode in episodes):
+        raise ConfigError(f"'{split_name}' has goals in words or pictures, or chains: its difficulty is not measured.")
     unreachable = set(read_unreachable(folder).get(house, ()))
     task = Task(World(split.load_house(house)))
     lookout, seen, quarters, instances = Lookout(task), [], [], []

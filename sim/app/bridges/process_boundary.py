@@ -11,6 +11,7 @@ exits with 0 where the kernel allows such namespaces, else it prints the reason.
 from __future__ import annotations
 
 import ctypes
+import errno
 import os
 import signal
 import subprocess
@@ -36,7 +37,13 @@ def enter(hidden: Iterable[str]) -> None:
         with open(f"/proc/self/{name}", "w") as stream:
             stream.write(content)
     _call("mount", None, b"/", None, _REC | _PRIVATE, None)
-    for path in hidden:
+    covered = ""
+    for path in sorted(map(os.path.realpath, hidden)):
+        if covered and os.path.commonpath((covered, path)) == covered:
+            continue  # it is in a folder that is hidden already
+        if not os.path.lexists(path):
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
+        covered = path
         if os.path.isdir(path):
             _call("mount", b"none", os.fsencode(path), b"tmpfs", _RDONLY | _NOSUID | _NODEV | _NOEXEC, None)
         else:

@@ -48,7 +48,7 @@ def main(control: socket.socket, hidden: list[str] | None, command: list[str]) -
         agent = subprocess.Popen(command, start_new_session=True, preexec_fn=begin, pass_fds=passed)
     except (OSError, ValueError, subprocess.SubprocessError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        _say(control, f"failed {reason}: '{command[0]}'")
+        _say(control, f"failed {reason}: '{getattr(error, 'filename', None) or command[0]}'")
         return
     nothing = os.open(os.devnull, os.O_RDWR)
     for number in (0, 1, 2):  # only the agent holds the pipes from here on, so that they are closed when it ends

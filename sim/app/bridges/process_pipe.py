@@ -7,6 +7,7 @@ read while an exchange runs, and only its end is kept.
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import fcntl
 import json
@@ -115,6 +116,7 @@ class AgentProcess:
             self._poll.register(number, select.POLLIN)
         self._received, self._tail, self._begun = bytearray(), bytearray(), False
         self._printed_bytes = 0
+        self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
         self._end = ""
         """A text on how the process has ended, for messages; "" while it runs."""
         self._number = 0
@@ -245,7 +247,7 @@ class AgentProcess:
         self._tail = (self._tail + printed)[-TAIL_BYTES:]
         before = self._printed_bytes
         self._printed_bytes += len(printed)
-        shown = printed[: max(0, PRINTED_BYTES - before)].decode("utf-8", errors="replace")
+        shown = self._decoder.decode(printed[: max(0, PRINTED_BYTES - before)])
         if before <= PRINTED_BYTES < self._printed_bytes:
             shown += "\n[the agent prints more, which is left out]\n"
         if shown:

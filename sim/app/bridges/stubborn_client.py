@@ -41,6 +41,7 @@ one after the other. Each request has a number, which its answer repeats.
 """
 
 import json
+import math
 import operator
 import os
 import random
@@ -336,6 +337,8 @@ def _map_of(agent):
 
 def _number(value):
     """Returns a number of the agent as a Python float; None if it is None."""
+    if value is not None and not math.isfinite(value):
+        raise TypeError(f"stop_confidence() and stop_target_xy_m() return finite numbers, got {value!r}")
     return None if value is None else float(value)
 
 

@@ -22,7 +22,7 @@ from sim.task.ground_truth import GroundTruth
 from sim.world.freespace import FreeSpace, covered
 from sim.world.obstacles import obstacle_polygons
 from sim.world.plan import floor_polygons
-from sim.world.storeys import floor_levels
+from sim.world.storeys import floor_levels, storey_floors
 from sim.world.world import World
 
 _FAR_M = 0.6
@@ -47,8 +47,7 @@ def export_plans(house: House, source: Mapping[str, object]) -> Iterator[Plan]:
     truth = GroundTruth(world)
     at_rest = data_at_rest(world.model)
     levels_m = sorted({round(level, 3) for level in floor_levels(world.model, world.labels)})
-    storeys = [level for i, level in enumerate(levels_m) if i == 0 or level - levels_m[i - 1] >= 1.0]
-    for number, floor_z_m in enumerate(storeys):
+    for number, floor_z_m in enumerate(storey_floors(levels_m, world.rule.same_storey_m)):
         if truth.space(floor_z_m).free.any():
             yield _storey(storey_name(house.name, number), world, truth, at_rest, floor_z_m, source)
 

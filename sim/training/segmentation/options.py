@@ -45,7 +45,8 @@ class Args:
     steps: Count = 100_000
     """Number of steps of the recipe."""
     hours: Positive | None = None
-    """Time limit of the command, loading and evaluations included; the recipe is fitted to it. None: --steps."""
+    """Time limit of the training, after the views are there, evaluations included; the recipe is fitted to it. None:
+    --steps."""
     stop_after_hours: Positive | None = None
     """Stop earlier than --hours, without a change of the recipe; the same command with a larger value continues."""
     batch: Count = 16

@@ -207,6 +207,7 @@ def test_the_same_seed_gives_the_same_episode_and_another_seed_another(house: Pa
     [
         ({"sensors": ("rgb", "thermal")}, ConfigError, "thermal"),
         ({"profile": "best"}, ConfigError, "best"),
+        ({"profile": {"quads": 0}}, ConfigError, r"RenderProfile.quads must be in \[1, 64\], got 0"),
         ({"goal": "spaceship"}, EpisodeError, "spaceship"),
         ({"goal": "toilet"}, EpisodeError, "sofa"),
         ({"start": Pose(2.9, 2.9, 0)}, EpisodeError, "Start|start"),

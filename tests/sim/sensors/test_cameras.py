@@ -136,7 +136,7 @@ def test_integers_of_any_library_are_actions(value: object) -> None:
     assert as_action(value) is Action.MOVE_FORWARD
 
 
-NO_ACTIONS = (1.0, "1", None, 9, np.array([1, 2]), torch.tensor([1, 2]), torch.tensor(1.5))
+NO_ACTIONS = (True, 1.0, "1", None, 9, np.array([1, 2]), torch.tensor([1, 2]), torch.tensor(1.5))
 
 
 @pytest.mark.parametrize("value", NO_ACTIONS, ids=repr)

@@ -163,10 +163,11 @@ def test_a_kind_without_parameters_gets_those_of_the_shipped_network():
 
 
 def test_an_unknown_goal_and_a_broken_file_are_refused(tmp_path: Path):
-    with pytest.raises(ConfigError, match="Unknown goal 'unicorn'"):
-        FittedVerifier({}, NaiveBayes(np.zeros(2), np.zeros((2, 4)), np.ones((2, 4)))).probability(
-            "unicorn", Features(1, 1.0, 1.0, 0.0)
-        )
+    """A category that is no goal of ObjectNav is that of a goal in words: it is verified as all goals together."""
+    pooled = FittedVerifier({}, NaiveBayes(np.zeros(2), np.zeros((2, 4)), np.ones((2, 4))))
+    assert pooled.probability("appliances", Features(1, 1.0, 1.0, 0.0)) == pytest.approx(0.5)
+    with pytest.raises(ConfigError, match="Unknown category 'unicorn'"):
+        pooled.probability("unicorn", Features(1, 1.0, 1.0, 0.0))
     broken = tmp_path / "broken.json"
     for content in ("[]", "{", '{"pooled": {"prior": [1], "mean": [], "variance": []}, "categories": {}}'):
         broken.write_text(content)

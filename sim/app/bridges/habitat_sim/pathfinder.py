@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
+import numbers
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -24,6 +25,7 @@ from sim.episodes.habitat import from_position, to_position
 from sim.task.ground_truth import GroundTruth
 from sim.world.freespace import NEAREST_FREE_M, FreeSpace
 from sim.world.kinematic import Glide
+from sim.world.storeys import storey_floors
 
 MARGIN_M = 0.15
 """Margin of the box that contains the free space."""
@@ -155,11 +157,8 @@ class PathFinder:
         if self._storeys is None:
             if self._truth is None:
                 raise ValueError("This PathFinder has no house: use that of a simulator.")
-            levels_m: list[float] = []
-            for level_m in self._truth.world.floor_levels_m:
-                if not levels_m or level_m - levels_m[-1] >= self._truth.success.same_storey_m:
-                    levels_m.append(level_m)
-            spaces = (self._truth.space(level_m) for level_m in levels_m)
+            floors_m = storey_floors(self._truth.world.floor_levels_m, self._truth.success.same_storey_m)
+            spaces = (self._truth.space(floor_z_m) for floor_z_m in floors_m)
             self._storeys = [Storey(space) for space in spaces if space.free.any()]
         return self._storeys
 
@@ -224,7 +223,9 @@ class PathFinder:
         return Vector3(np.nan) if found is None else Vector3(to_position(*found[1], found[0].floor_z_m))
 
     def snapped(self, x_m: float, y_m: float, z_m: float) -> tuple[Storey, tuple[float, float]] | None:
-        """Returns the storey and the nearest point on it."""
+        """Returns the storey and the nearest point on it; None: there is none, or a coordinate is not finite."""
+        if not all(map(math.isfinite, (x_m, y_m, z_m))):
+            return None
         storey = self._storey_at(z_m, SNAP_M)
         if storey is None:
             return None
@@ -346,7 +347,7 @@ class PathFinder:
 
         0: there is none.
         """
-        index = pt if isinstance(pt, int) else self.get_island(pt)
+        index = int(pt) if isinstance(pt, numbers.Integral) else self.get_island(pt)
         for storey in self.storeys:
             if 0 <= index < storey.part_count:
                 cells = np.argwhere(storey.parts == index + 1)

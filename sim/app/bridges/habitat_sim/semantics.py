@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from sim.app.bridges.habitat_sim.maths import Vector3, quat_from_coeffs
 from sim.core.interface import MPCAT40_ID
+from sim.core.reading import FARTHEST_M
+from sim.houses.geoms import geom_polytope
 from sim.houses.house import Room
 from sim.houses.labels import VOID
-from sim.world.standing import is_in, read_standing
+from sim.world.standing import Standing, is_in, read_standing
 from sim.world.world import World
 
 
@@ -170,7 +172,7 @@ class SemanticScene:
 def semantic_scene(world: World) -> SemanticScene:
     """Returns the semantic scene of the present state of a world."""
     standing = read_standing(world.model, world.data, world.labels)
-    boxes = {item.label: _box(item.low, item.high) for item in standing}
+    boxes = {item.label: _box(*_extents(world, item)) for item in standing}
     nothing = AxisAlignedBox(np.zeros(3), np.zeros(3))
     objects = [SemanticObject(f"{VOID}_0", 0, Category(VOID, 0), nothing)]
     for index, instance in enumerate(world.labels.instances, start=1):
@@ -203,6 +205,16 @@ def _of_room(room: Room) -> AxisAlignedBox:
 def _around(boxes: list[AxisAlignedBox]) -> AxisAlignedBox:
     """Returns the box around boxes."""
     return AxisAlignedBox(np.min([box.low for box in boxes], axis=0), np.max([box.high for box in boxes], axis=0))
+
+
+def _extents(world: World, item: Standing) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the lowest and the highest corner of an instance; of a plane, of the rectangle that is rendered."""
+    if (item.high - item.low).max() <= FARTHEST_M:
+        return item.low, item.high
+    (instance,) = (each for each in world.labels.instances if each.name == item.label)
+    shapes = [geom_polytope(world.model, world.data, geom, rendered=True) for geom in instance.geom_ids]
+    corners = np.concatenate([shape.vertices_m for shape in shapes])
+    return corners.min(axis=0), corners.max(axis=0)
 
 
 def _box(low: NDArray[np.float64], high: NDArray[np.float64]) -> AxisAlignedBox:

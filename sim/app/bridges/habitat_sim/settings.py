@@ -55,7 +55,7 @@ class SensorSpec:
     hfov: Any = 90.0
     """Horizontal field of view, degrees."""
     noise_model: str = "None"
-    """Name of a preset of `sim.sensors.noise`, for depth and colour; "None": no noise."""
+    """Only "None": noise of all sensors is an option of `stubborn_habitat.configure`."""
     noise_model_kwargs: Any = field(default_factory=dict)
     near: float = 0.01
     far: float = 1000.0
@@ -154,7 +154,7 @@ class SimulatorConfiguration:
     random_seed: int = 0
     default_agent_id: int = 0
     allow_sliding: bool = True
-    """Only with the motion `kinematic` (`stubborn_habitat.configure`): whether a blocked motion slides."""
+    """Whether `step_filter` slides along obstacles; actions do what `stubborn_habitat.configure(motion=...)` says."""
     create_renderer: bool = True
     enable_physics: bool = False
     enable_gfx_replay_save: bool = False

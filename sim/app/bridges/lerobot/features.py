@@ -40,10 +40,10 @@ def picture_of(rgb: NDArray[np.uint8], width_px: int) -> NDArray[np.uint8]:
     """Returns a colour image in the width of a dataset, (h, w, 3); the height is even.
 
     Raises:
-        ConfigError: the camera's image is narrower, or the width is odd.
+        ConfigError: the camera's image is narrower, or the width is odd or less than 2.
     """
     height, width = rgb.shape[:2]
-    if width_px > width or width_px % 2:
+    if not 2 <= width_px <= width or width_px % 2:
         raise ConfigError(f"The width of pictures must be even and at most the camera's, {width} pixels.")
     size = width_px, 2 * round(0.5 * height * width_px / width)
     return rgb if size == (width, height) else np.asarray(cv2.resize(rgb, size, interpolation=cv2.INTER_AREA), np.uint8)

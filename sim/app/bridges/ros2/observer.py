@@ -20,6 +20,7 @@ from sim.core.errors import AgentError, ConfigError
 from sim.core.geometry.pose import Pose
 from sim.core.goals import PICTURE_PX
 from sim.core.interface import GOAL_CATEGORIES, GOAL_SENSORS, Action, CameraModel, Observation
+from sim.core.reading import reason_of
 from sim.env.discrete import SLOW_SHARE, Held
 
 KEPT = 10
@@ -229,18 +230,21 @@ class AgentNode:
         return keep
 
     def _announce(self, message: Any) -> None:
-        content = json.loads(message.data)
-        stamp = content.get("stamp", {"sec": 0, "nanosec": 0})
-        self.announced = Announced(
-            content["run"],
-            content["number"],
-            content.get("goal_number", 0),
-            content.get("goal", ""),
-            content.get("seed", 0),
-            stamp["sec"] * 10**9 + stamp["nanosec"],
-            content.get("over", False),
-            content.get("picture", False),
-        )
+        try:
+            content = json.loads(message.data)
+            stamp = content.get("stamp", {"sec": 0, "nanosec": 0})
+            self.announced = Announced(
+                content["run"],
+                content["number"],
+                content.get("goal_number", 0),
+                content.get("goal", ""),
+                content.get("seed", 0),
+                stamp["sec"] * 10**9 + stamp["nanosec"],
+                content.get("over", False),
+                content.get("picture", False),
+            )
+        except (ValueError, KeyError, TypeError, AttributeError) as fault:
+            raise AgentError(f"The message of /episode is not as docs/ros.md says: {reason_of(fault)}.") from None
 
     def _show(self, message: Any) -> None:
         self._picture = _nanoseconds(message.header.stamp), _rgb_of(message)
@@ -258,7 +262,9 @@ class AgentNode:
 
     def _depth(self, message: Any) -> dict[str, NDArray]:
         self._require_size(message)
-        return {"depth": depth_of(memoryview(message.data).cast("B"), message.encoding, self._camera)}
+        rows = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)
+        row_bytes = message.width * (2 if message.encoding == "16UC1" else 4)
+        return {"depth": depth_of(rows[:, :row_bytes].tobytes(), message.encoding, self._camera)}
 
     def _require_size(self, message: Any) -> None:
         camera = self._camera

@@ -42,7 +42,7 @@ class Requests:
     _velocity_at_s: float = -math.inf
     _actions: deque[Action] = field(default_factory=deque)
     _flags: set[str] = field(default_factory=set)
-    """Of `stop`, `step`, `reset`, `next`, `closed`."""
+    """Of `stop`, `step`, `reset` and `next_episode`."""
     _paused: bool = False
 
     def begin(self) -> None:
@@ -85,18 +85,19 @@ class Requests:
             self._actions.clear()
 
     def action(self, within_s: float) -> Action | None:
-        """Returns the next action; None if no action arrived within the time, or a flag is up."""
+        """Returns the next action; None if no action arrived within the time, or a flag other than `step` is up."""
         with self._changed:
-            self._changed.wait_for(lambda: bool(self._actions or self._flags), within_s)
+            self._changed.wait_for(lambda: bool(self._actions or self._flags - {"step"}), within_s)
             if "stop" in self._flags:
                 self._flags.discard("stop")
                 return Action.STOP
             return self._actions.popleft() if self._actions else None
 
     def raise_flag(self, name: str) -> None:
-        """Asks for something that happens once."""
+        """Asks for something that happens once; `step` counts during a pause only."""
         with self._changed:
-            self._flags.add(name)
+            if name != "step" or self._paused:
+                self._flags.add(name)
             self._changed.notify_all()
 
     def take(self, name: str) -> bool:
@@ -106,10 +107,17 @@ class Requests:
             self._flags.discard(name)
             return asked
 
+    def asked(self, name: str) -> bool:
+        """Returns whether something is asked for; the request stays."""
+        with self._changed:
+            return name in self._flags
+
     def pause(self, paused: bool) -> None:
         """Stops or starts simulated time."""
         with self._changed:
             self._paused = paused
+            if not paused:
+                self._flags.discard("step")
             self._changed.notify_all()
 
     @property

@@ -262,13 +262,16 @@ class NodeDriver:
         requests.discard_actions()
         self.robot.publish(observation)
         while True:
-            held = requests.paused and not requests.take("step")
+            if requests.take("stop"):
+                return Action.STOP
+            held = requests.paused and not requests.asked("step")
             action = None if held else requests.action(CLOCK_S)
             for name in ("reset", "next_episode"):
                 if requests.take(name):
                     self.given_up = name
                     raise AgentError(_GIVEN_UP[name])
             if action is not None:
+                requests.take("step")
                 return action
             if held:
                 requests.wait(CLOCK_S)

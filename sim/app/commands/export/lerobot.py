@@ -25,8 +25,9 @@ from sim.app.bridges.lerobot.features import task_of
 from sim.app.bridges.lerobot.replays import Replayer
 from sim.core.errors import ConfigError, EpisodeError
 from sim.core.files import write_atomically
+from sim.core.interface import MOVES
 from sim.core.reading import read_json
-from sim.task.trajectory import trajectory_file
+from sim.task.trajectory import read_trajectory, trajectory_file
 
 ABOUT = "stubborn.json"
 """The run and the options of an export, in its folder."""
@@ -54,6 +55,8 @@ def main(args: Args) -> int:
         if args.only_success and exported(run, only_success=False):
             raise ConfigError(f"No recorded episode of '{args.run}' succeeded; leave out --only-success.")
         raise ConfigError(f"'{args.run}' has no recorded episode to export: run it with --record.")
+    if any(read_trajectory(trajectory_file(run.path, each)).actions.max(initial=0) >= len(MOVES) for each in ids):
+        raise ConfigError(f"The agent of '{args.run}' tilts its camera; a dataset has the actions of the drive only.")
     writer, replayer = DatasetWriter(args.out, args.width_px), Replayer(run)
     try:
         shape = replayer.picture_shape(args.width_px)

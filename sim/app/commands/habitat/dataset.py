@@ -18,6 +18,7 @@ from typing import Any, Literal
 from sim.app import cli
 from sim.app.bridges.habitat.conversions import CATEGORIES
 from sim.app.evaluation.parallel import ordered_map
+from sim.core.errors import ConfigError
 from sim.core.files import write_together
 from sim.core.interface import MPCAT40_ID
 from sim.episodes import habitat
@@ -49,6 +50,7 @@ class Args:
 def main(args: Args) -> int:
     """Writes the files; returns the exit status."""
     split = load_split(args.split)
+    require_format(args.format, split)
     if args.format in ("ovon", "goat"):
         return _write_words(args, split)
     goals = CATEGORIES["mp3d" if args.format == "v1" else "hm3d"]
@@ -87,6 +89,17 @@ def main(args: Args) -> int:
     size = sum(file.stat().st_size for file in files) / 1e6
     print(f"{args.out}: {len(houses)} houses, {count} episodes, {points} view points, {size:.1f} MB.")
     return 0
+
+
+def require_format(name: str, split: Split) -> None:
+    """Raises ConfigError if a format cannot hold the goals of a split."""
+    specs = [spec for episode in split.episodes for spec in episode.specs]
+    kinds = {spec.kind for spec in specs}
+    chains_or_pictures = bool(kinds & {"picture", "instance"}) or len(specs) > len(split.episodes)
+    if chains_or_pictures and name != "goat":
+        raise ConfigError(f"'{split.name}' has chains or pictures, which {name} cannot hold: give --format goat.")
+    if kinds - {"category"} and name in ("v1", "v2"):
+        raise ConfigError(f"'{split.name}' has goals in words, which {name} cannot hold: give --format ovon or goat.")
 
 
 def _write_words(args: Args, split: Split) -> int:

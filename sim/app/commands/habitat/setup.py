@@ -9,14 +9,17 @@ habitat-lab needs NumPy 1.26 and OpenCV 4, so it gets an environment of its own.
 
 from __future__ import annotations
 
+import contextlib
 import importlib.metadata
 import json
+import shutil
 import subprocess
 import sys
 import time
 import urllib.parse
 import urllib.request
 import venv
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -53,25 +56,35 @@ class Args:
 def main(args: Args) -> int:
     """Makes the environment; returns the exit status."""
     begin = time.monotonic()
-    make_environment(args.out, "habitat-lab, habitat-baselines and this project; about two minutes and 2.5 GB.")
-    install(args.out, *FIRST)
-    install(args.out, "--no-build-isolation", GYM)
-    install(args.out, *PINNED, *this_project())
-    (packages,) = args.out.glob("lib/python*/site-packages")
-    (packages / "stubborn_habitat_sim.pth").write_text(STARTUP)
     python = args.out / "bin" / "python"
-    _call([str(python), "-m", "pip", "check"], "The packages do not fit together")
-    _call([str(python), "-c", "import habitat"], "habitat-lab cannot be imported")
+    with new_environment(args.out, "habitat-lab, habitat-baselines and this project; about two minutes and 2.5 GB."):
+        install(args.out, *FIRST)
+        install(args.out, "--no-build-isolation", GYM)
+        install(args.out, *PINNED, *this_project())
+        (packages,) = args.out.glob("lib/python*/site-packages")
+        (packages / "stubborn_habitat_sim.pth").write_text(STARTUP)
+        _call([str(python), "-m", "pip", "check"], "The packages do not fit together")
+        _call([str(python), "-c", "import habitat"], "habitat-lab cannot be imported")
     print(f"Done in {time.monotonic() - begin:.0f} s: {python} SCRIPT runs scripts for Habitat (docs/habitat.md).")
     return 0
 
 
-def make_environment(folder: Path, content: str) -> None:
-    """Makes an empty environment and prints what it will hold; raises ConfigError if its folder exists."""
+@contextlib.contextmanager
+def new_environment(folder: Path, content: str) -> Iterator[None]:
+    """Makes an empty environment, prints what it will hold, and removes it if what follows fails or is interrupted.
+
+    Raises:
+        ConfigError: the folder exists.
+    """
     if folder.exists():
         raise ConfigError(f"'{folder}' exists: remove it, or name another folder with --out.")
     print(f"{folder}: {content}", flush=True)
-    venv.create(folder, with_pip=True)
+    try:
+        venv.create(folder, with_pip=True)
+        yield
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
 
 
 def this_project() -> list[str]:

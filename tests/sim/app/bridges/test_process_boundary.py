@@ -162,6 +162,18 @@ def test_a_machine_without_namespaces_is_refused_or_named(monkeypatch: pytest.Mo
             ProcessConfig(**wrong)  # type: ignore[arg-type]
 
 
+@needs_namespaces
+def test_a_hidden_folder_in_another_one_is_hidden_and_a_missing_one_is_named(tmp_path: Path) -> None:
+    (tmp_path / "a" / "b").mkdir(parents=True)
+    code = f"import os, sys; sys.exit(7 if os.listdir({str(tmp_path / 'a')!r}) == [] else 3)"
+    for hidden, message in (
+        ([tmp_path / "a", tmp_path / "a/b"], "status 7"),
+        ([tmp_path / "no"], f"'{tmp_path / 'no'}'"),
+    ):
+        with pytest.raises((AgentError, ConfigError), match=message):
+            ProcessAgent([sys.executable, "-c", code], **PARTS, config=NAMESPACE, hidden=hidden).reset("bed", 0)
+
+
 def test_houses_episodes_and_results_are_hidden_and_the_agents_folder_is_not(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import inspect
 import math
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -16,7 +17,7 @@ import pytest
 from sim.app import cli
 from sim.app.bridges.ros2.observer import AgentNode, Announced
 from sim.app.bridges.ros2.requests import Pace, Requests
-from sim.app.bridges.ros2.robot import RosConfig, run_driven, run_stepped
+from sim.app.bridges.ros2.robot import NodeDriver, RosConfig, run_driven, run_stepped
 from sim.app.commands.ros import agent, robot
 from sim.app.composition.ros_agent import RobotAgent, build_apart
 from sim.app.composition.runner import Play
@@ -126,6 +127,37 @@ def test_a_flag_ends_a_wait_and_is_taken_once() -> None:
     requests.wait(5.0)
     assert time.monotonic() - begin_s < 1.0
     assert [requests.take("reset"), requests.take("reset")] == [True, False]
+
+
+def test_a_step_stays_until_an_action_has_come_and_ends_with_the_pause() -> None:
+    requests = Requests()
+    requests.raise_flag("step")  # without a pause it has no meaning
+    assert not requests.asked("step")
+    requests.pause(True)
+    requests.raise_flag("step")
+    begin_s = time.monotonic()
+    assert requests.action(0.2) is None
+    assert time.monotonic() - begin_s > 0.15  # it waited
+    assert requests.asked("step")
+    requests.pause(False)
+    assert not requests.asked("step")
+
+
+@pytest.mark.parametrize("flag", ["stop", "step"])
+def test_a_paused_agent_stops_and_steps(flag: str) -> None:
+    requests, clock = Requests(), []
+    robot: Any = SimpleNamespace(
+        node=SimpleNamespace(requests=requests), publish=lambda _: None, repeat_clock=lambda: clock.append(1)
+    )
+    driver = NodeDriver(robot)
+    requests.pause(True)
+    requests.raise_flag(flag)
+    later = threading.Timer(0.3, requests.act, [2])
+    later.start()
+    assert driver.act({}) is (Action.STOP if flag == "stop" else Action.TURN_LEFT)
+    later.join()
+    assert len(clock) < 20
+    assert not requests.asked(flag)
 
 
 def test_the_pace_keeps_the_mean_rate_and_starts_anew_after_a_delay() -> None:

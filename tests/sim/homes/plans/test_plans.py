@@ -11,7 +11,7 @@ import pytest
 from sim.core.errors import HouseError
 from sim.core.geometry.grid import GridFrame, cells_near_segment
 from sim.core.geometry.pose import Pose
-from sim.core.interface import Action, CameraModel, RobotModel
+from sim.core.interface import Action, CameraModel, RobotModel, SuccessRule
 from sim.env.scene import Scene
 from sim.homes.plans.export import export_plans
 from sim.homes.plans.motion_kernels import mark_square, mark_swept
@@ -21,6 +21,7 @@ from sim.homes.plans.sight import PlanCamera
 from sim.houses.house import House
 from sim.robot.config import RobotConfig
 from sim.task.metrics import goal_share
+from sim.world.storeys import storey_floors
 from stubborn.mapping.collision_marks import square_ahead
 from stubborn.mapping.mapper import Mapper, MappingConfig
 from stubborn.mapping.navmap import NavMap
@@ -106,6 +107,14 @@ def test_each_storey_has_a_plan_of_its_own():
     assert (lower.goals(), upper.goals()) == (("bed",), ("sofa",))
     assert upper.name == "two_storeys_storey_1"
     assert upper.floor_z_m == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(
+    ("levels_m", "floors_m"),
+    [((0.0,), [0.0]), ((-0.6, 0.0), [-0.6]), ((-0.6, 0.0, 2.9), [-0.6, 2.9]), ((0.0, 0.6, 1.2), [0.0, 1.2])],
+)
+def test_levels_less_than_a_metre_above_the_lowest_one_of_a_storey_belong_to_it(levels_m, floors_m):
+    assert storey_floors(levels_m, SuccessRule.same_storey_m) == floors_m
 
 
 @pytest.mark.parametrize("yaw_deg", [0.0, 90.0, 217.0])

@@ -12,6 +12,7 @@ from sim.app.bridges.habitat_sim.agent import AgentState
 from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Vector3, quat_from_coeffs, quat_rotate_vector
 from sim.app.bridges.habitat_sim.options import configure
 from sim.app.bridges.habitat_sim.pathfinder import MARGIN_M, GreedyFollowerError, MultiGoalShortestPath, ShortestPath
+from sim.app.bridges.habitat_sim.semantics import semantic_scene
 from sim.app.bridges.habitat_sim.settings import (
     ActionSpec,
     ActuationSpec,
@@ -22,10 +23,13 @@ from sim.app.bridges.habitat_sim.settings import (
     SimulatorConfiguration,
 )
 from sim.app.bridges.habitat_sim.simulator import Simulator
+from sim.app.commands.habitat.dataset import require_format
 from sim.app.services.frames import Frame
 from sim.core.errors import ConfigError, EpisodeError, HouseError
+from sim.episodes.splits import load_split
 from sim.houses.house import House
 from sim.houses.writing import house_text
+from sim.world.world import World
 from tests.helpers.worlds import bed_behind_a_wall, room, with_box
 
 AHEAD = quat_from_coeffs([0.0, 0.0, 0.0, 1.0])
@@ -150,6 +154,26 @@ def test_semantic_images_hold_indices_of_the_semantic_scene(tmp_path: Path) -> N
         assert sofa.region is not None
         assert sofa.region.category.name() == "living"
         assert scene.get_regions_for_point(np.array([0.0, 1.0, 0.0])) == [0]
+
+
+def test_a_plane_has_the_box_of_the_rectangle_that_is_rendered() -> None:
+    scene = semantic_scene(World(room(6, 4)))
+    floor = next(item for item in scene.objects if item.category.name() == "floor")
+    assert floor.aabb.sizes == pytest.approx([6.2, 0.0, 4.2], abs=0.01)
+    assert scene.aabb.sizes == pytest.approx([6.2, 2.5, 4.2], abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("split", "name", "message"),
+    [("words-seen", "v1", "give --format ovon or goat"), ("chains-val", "ovon", "give --format goat"),
+     ("pictures", "v2", "give --format goat"), ("pictures", "goat", ""), ("words-seen", "ovon", ""), ("val", "v1", "")],
+)  # fmt: skip
+def test_a_dataset_has_a_format_that_holds_its_goals(split: str, name: str, message: str) -> None:
+    if message:
+        with pytest.raises(ConfigError, match=message):
+            require_format(name, load_split(split))
+    else:
+        require_format(name, load_split(split))
 
 
 def test_paths_lead_around_walls(tmp_path: Path) -> None:
