@@ -138,10 +138,9 @@ class PlanEnv(gymnasium.Env[Any, Any]):
     ) -> None:
         self.config = config or PlanEnvConfig()
         self._read = read or functools.cache(read_plan)
-        folder = Path(plans) if isinstance(plans, str | Path) else None
-        self.files = sorted(folder.glob("*.npz")) if folder is not None else list(plans)
+        self.files = sorted(Path(plans).glob("*.npz")) if isinstance(plans, str | Path) else list(plans)
         if not self.files:
-            where = f" in '{folder}'" if folder is not None else ""
+            where = f" in '{plans}'" if isinstance(plans, str | Path) else ""
             raise ConfigError(f"No plan{where}: `{command('houses', 'plans')}` writes them.")
         self._camera: tuple[int, PlanCamera] | None = None
         self._frame = GridFrame.around_start(self.config.map_cells, self.config.cell_m)

@@ -63,7 +63,7 @@ MODEL = Model(
 CELLS = np.zeros((2, 3))
 PLAN = Plan(
     name="h", frame=GridFrame(origin_xy_m=(0.0, 0.0), shape=(2, 3), cell_m=0.05), floor_z_m=0.0, ceiling_m=2.5,
-    radius_m=0.18, slack_m=CELLS.astype(np.float32), floor=CELLS.astype(np.bool_), room=CELLS.astype(np.int8),
+    radius_m=0.18, slack_m=CELLS.astype(np.float32), floor=CELLS.astype(np.bool_), room=CELLS.astype(np.int16),
     rooms=("room_bedroom_00",), succeeds=CELLS.astype(np.uint32), span_start=np.arange(7, dtype=np.int32),
     span_low_m=np.zeros(6, np.float32), span_high_m=np.ones(6, np.float32), span_instance=np.zeros(6, np.uint16),
     instances=("wall_00",), categories=np.ones(1, np.uint8),

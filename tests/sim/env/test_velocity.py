@@ -183,7 +183,11 @@ def test_what_is_not_allowed_is_refused(env: ObjectNavVelocityEnv, tmp_path: Pat
         with pytest.raises(ConfigError, match=r"period_s|time_limit_s"):
             make(tmp_path, **wrong)
     assert make(tmp_path, period_s=0.5).metadata["render_fps"] == 2
-    for options, message in (({"look": True}, "look=True adds"), ({"robot": {"motion": "sliding"}}, "'sliding'")):
+    others: tuple[tuple[dict[str, Any], str], ...] = (
+        ({"look": True}, "look=True adds"),
+        ({"robot": {"motion": "sliding"}}, "'sliding'"),
+    )
+    for options, message in others:
         with pytest.raises(ConfigError, match=message):
             make(tmp_path, **options)
     for action in ((0.1, 0.0), (np.nan, 0.0, 0.0)):
