@@ -106,7 +106,7 @@ def test_a_log_of_another_seed_and_a_broken_file_are_refused(seats: Path, tmp_pa
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [({"split": "val"}, "fitted on 'val'"), ({"semantics": "gt"}, wording.MAKES_NO_ERRORS_TO_LEARN)],
+    [({"split": "val"}, "fitted on houses of 'val'"), ({"semantics": "gt"}, wording.MAKES_NO_ERRORS_TO_LEARN)],
 )
 def test_it_refuses_val_and_exact_segmentation(options: dict, message: str):
     with pytest.raises(ConfigError, match=message):
