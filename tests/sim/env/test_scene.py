@@ -36,7 +36,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_prepared_house_gives_the_same_episode_to_the_bit(
     split: str, cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (house,) = sample(load_split(split).houses, 1)
+    house = sample(load_split(split).houses, 1)[0]
     kept = [list(_frames(split, house)) for _ in range(2)]
     assert any(cache.iterdir())
     monkeypatch.setenv(SIZE_VARIABLE, "0")
