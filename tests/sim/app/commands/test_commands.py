@@ -52,7 +52,7 @@ def test_the_tool_writes_what_is_shipped(tmp_path: Path) -> None:
 def test_a_listed_house_comes_out_as_listed(split: str) -> None:
     houses = load_split(split).house_list
     assert houses is not None
-    (name,) = sample(list(houses.recipes), 1)
+    name = sample(list(houses.recipes), 1)[0]
     assert hashlib.sha256(houses.recipes[name].house_bytes()).hexdigest() == houses.sha256[name]
 
 
