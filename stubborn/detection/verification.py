@@ -127,7 +127,7 @@ class FittedVerifier:
 
     def probability(self, goal: str, features: Features) -> float:
         """Returns the probability in [0, 1] that a candidate for this goal is true."""
-        if goal not in MPCAT40:  # goals in words have categories that are no goals of ObjectNav
+        if goal not in MPCAT40:  # goals in words may have other categories than the goals of ObjectNav
             raise ConfigError(f"Unknown category '{goal}'. Available: {', '.join(MPCAT40)}.")
         return self.by_category.get(goal, self.pooled).probability(features)
 

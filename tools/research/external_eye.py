@@ -164,7 +164,7 @@ class Detector:
                 f"'{folder}' @vladmandic/human@3.3.6 @tensorflow/tfjs@4.22.0 @tensorflow/tfjs-backend-wasm@4.22.0"
             )
         script = Path(__file__).with_suffix(".js")
-        self._said = tempfile.TemporaryFile()  # noqa: SIM115 - a pipe that nobody reads would block the process
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115 - an unread pipe would block the process
         self._process = subprocess.Popen(
             [node, str(script), str(folder)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._said
         )

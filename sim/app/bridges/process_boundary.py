@@ -38,7 +38,7 @@ def enter(hidden: Iterable[str]) -> None:
             stream.write(content)
     _call("mount", None, b"/", None, _REC | _PRIVATE, None)
     covered = ""
-    for path in sorted(map(os.path.realpath, hidden)):
+    for path in sorted(map(os.path.realpath, hidden), key=lambda path: path.split(os.sep)):  # folders before content
         if covered and os.path.commonpath((covered, path)) == covered:
             continue  # it is in a folder that is hidden already
         if not os.path.lexists(path):

@@ -104,12 +104,13 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
 
 
 def _whole_lines(text: str) -> Iterator[tuple[int, str]]:
-    """Yields each line with its number; lines that end with a backslash are continued by the next one."""
+    """Yields each line with its number; one that ends with a backslash and is no comment goes on in the next one."""
     start, whole = 1, ""
     for number, line in enumerate(text.splitlines(), start=1):
         start = start if whole else number
+        goes_on = line.endswith("\\") and not line.lstrip().startswith("#")
         whole += line.removesuffix("\\")
-        if not line.endswith("\\"):
+        if not goes_on:
             yield start, whole
             whole = ""
     yield start, whole

@@ -163,7 +163,7 @@ def test_a_kind_without_parameters_gets_those_of_the_shipped_network():
 
 
 def test_an_unknown_goal_and_a_broken_file_are_refused(tmp_path: Path):
-    """A category that is no goal of ObjectNav is that of a goal in words: it is verified as all goals together."""
+    """A category that is not a goal of ObjectNav belongs to a goal in words: it is verified as all goals together."""
     pooled = FittedVerifier({}, NaiveBayes(np.zeros(2), np.zeros((2, 4)), np.ones((2, 4))))
     assert pooled.probability("appliances", Features(1, 1.0, 1.0, 0.0)) == pytest.approx(0.5)
     with pytest.raises(ConfigError, match="Unknown category 'unicorn'"):

@@ -164,10 +164,11 @@ def test_a_machine_without_namespaces_is_refused_or_named(monkeypatch: pytest.Mo
 
 @needs_namespaces
 def test_a_hidden_folder_in_another_one_is_hidden_and_a_missing_one_is_named(tmp_path: Path) -> None:
-    (tmp_path / "a" / "b").mkdir(parents=True)
+    for name in ("a/b", "a-b"):  # as text, "a-b" is between "a" and "a/b"
+        (tmp_path / name).mkdir(parents=True)
     code = f"import os, sys; sys.exit(7 if os.listdir({str(tmp_path / 'a')!r}) == [] else 3)"
     for hidden, message in (
-        ([tmp_path / "a", tmp_path / "a/b"], "status 7"),
+        ([tmp_path / name for name in ("a", "a-b", "a/b")], "status 7"),
         ([tmp_path / "no"], f"'{tmp_path / 'no'}'"),
     ):
         with pytest.raises((AgentError, ConfigError), match=message):

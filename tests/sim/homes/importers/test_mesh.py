@@ -108,8 +108,8 @@ def test_an_obj_file_keeps_its_objects_and_colours(tmp_path: Path) -> None:
 
 
 def test_lines_that_other_readers_accept_lose_no_home(tmp_path: Path) -> None:
-    """A face on two lines, a colour of one number, and colours that are no numbers."""
-    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl grey\nf 1 \\\n2 3\nusemtl odd\nf 1 2 3"
+    """A comment with a backslash, a face on two lines, a colour of one number, and colours that are not numbers."""
+    corners = "# C:\\homes\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl grey\nf 1 \\\n2 3\nusemtl odd\nf 1 2 3"
     (tmp_path / "home.obj").write_text(f"mtllib m.mtl\n{corners}")
     (tmp_path / "m.mtl").write_text("newmtl grey\nKd 0.5\nd\nnewmtl odd\nKd spectral a.rfl\nd nan\n")
     losses = Losses()
