@@ -1,8 +1,9 @@
 """Renders the robot in third person: from behind and above, with everything between it and the eye cut away.
 
 Obstacles that no camera renders, such as panes of glass, are tinted where they are in front of visible surfaces.
-The near plane lies just before the robot, so that no wall or ceiling hides it, and the room ahead stays whole. Colours
-are shaded as those of the robot's camera (`sim.renderer.shading`).
+The near plane lies just before the robot, so that no wall or ceiling hides it, and the room ahead stays whole. What
+the plane cuts through is drawn as a solid section. Colours are shaded as those of the robot's camera
+(`sim.renderer.shading`).
 """
 
 from __future__ import annotations
@@ -54,6 +55,10 @@ is inside the box around its frame."""
 _AXES = np.vstack([np.eye(3), -np.eye(3)])
 _SPECK_PX = 12
 """Smallest area whose outline is drawn."""
+SECTION: Colour = (70, 74, 84)
+"""Colour of the inside of walls and furniture that the near plane cuts through."""
+_APART_M = 0.02
+"""Surfaces at least this far apart are different ones."""
 OUTSIDE: Colour = (36, 40, 48)
 """Colour of pixels that show nothing: the outside of the house."""
 _DARK, _LENS, _ARROW = (0.10, 0.12, 0.16, 1.0), (0.35, 0.75, 1.0, 1.0), (0.13, 0.35, 0.80, 1.0)
@@ -115,6 +120,9 @@ class ChaseView:
         self._lamps.restore()
         self._mark_front(pose)
         picture, inverse = self._drawn(near_m, eye_m, axes)
+        cut = self._cut(shown, near_m, eye_m, axes)
+        if cut.size:
+            self._fill_sections(picture, inverse, cut, near_m, eye_m, axes)
         if hidden.size:
             self._tint(picture, inverse, hidden, near_m, eye_m, axes)
         return picture
@@ -133,6 +141,51 @@ class ChaseView:
         model, offset = self._world.model, self._world.data.geom_xpos[geoms] - eye_m
         bound = np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)[geoms]
         return geoms[(np.linalg.norm(offset, axis=1) < FAR_M + bound) & (offset @ axes[0] + bound > near_m)]
+
+    def _cut(self, geoms: NDArray[np.intp], near_m: float, eye_m: NDArray, axes: NDArray) -> NDArray[np.intp]:
+        """Returns those of the given geoms that the near plane may cut through; planes have no inside."""
+        bound_m, offset = self._world.model.geom_rbound[geoms], self._world.data.geom_xpos[geoms] - eye_m
+        return geoms[(bound_m > 0.0) & (np.abs(offset @ axes[0] - near_m) < bound_m)]
+
+    def _fill_sections(
+        self,
+        picture: NDArray[np.uint8],
+        inverse: NDArray[np.float32],
+        cut: NDArray[np.intp],
+        near_m: float,
+        eye_m: NDArray,
+        axes: NDArray,
+    ) -> None:
+        """Paints the pixels that show the inside of a cut geom, except where they would hide the robot.
+
+        Args:
+            picture: (h, w, 3); changed in place.
+            inverse: (h, w) inverse of the visible depth, 1 / m; changed in place.
+            cut: ids of the geoms that the near plane may cut through.
+            near_m: near plane.
+            eye_m: (3,) optical centre.
+            axes: (3, 3) the camera's axes.
+        """
+        self._scene.fill(self._world.data, cut, eye_m, axes, self._slopes, near_m)
+        self._scene.scene.nlight = 0
+        self._scene.scene.flags[:] = 0  # draws faces that look away from the eye, too
+        inside = self._inverse_depth(near_m)
+        mask = (inside > np.float32(1.0 / Z_FAR_M)) & (1.0 / inside < 1.0 / inverse - _APART_M)
+        rows, columns = np.nonzero(mask)
+        left = self._slopes[0] * (1.0 - 2.0 * (columns + 0.5) / mask.shape[1])
+        up = self._slopes[1] * (1.0 - 2.0 * (rows + 0.5) / mask.shape[0])
+        rays = axes[0] + left[:, None] * axes[1] + up[:, None] * axes[2]
+        pose = self._world.pose
+        away_m = (eye_m + rays / inverse[mask][:, None])[:, :2] - (pose.x_m, pose.y_m)
+        mask[mask] = np.linalg.norm(away_m, axis=1) > self._world.robot.radius_m + _APART_M
+        picture[mask], inverse[mask] = SECTION, inside[mask]
+
+    def _inverse_depth(self, near_m: float) -> NDArray[np.float32]:
+        """Renders the filled scene and returns the inverse of its depth (h, w) in 1 / m; 1 / far plane: nothing."""
+        mujoco.mjr_restoreBuffer(self._context)
+        mujoco.mjr_render(self._rect, self._scene.scene, self._context)
+        mujoco.mjr_readPixels(None, self._depth, self._rect, self._context)
+        return self._depth[::-1] * np.float32(_depth_slope(near_m)) + np.float32(1.0 / Z_FAR_M)
 
     def _tint(
         self,
@@ -156,12 +209,8 @@ class ChaseView:
         self._scene.fill(self._world.data, hidden, eye_m, axes, self._slopes, near_m)
         for geom in self._scene.scene.geoms[: self._scene.scene.ngeom]:
             geom.rgba[3], geom.transparent = 1.0, 0  # MuJoCo writes no depth for transparent geoms
-        mujoco.mjr_restoreBuffer(self._context)
-        mujoco.mjr_render(self._rect, self._scene.scene, self._context)
-        mujoco.mjr_readPixels(None, self._depth, self._rect, self._context)
-        visible = self._depth[::-1] > 0.0
-        before = self._depth[::-1] * np.float32(_depth_slope(near_m)) + np.float32(1.0 / Z_FAR_M)
-        mask = visible & (1.0 / before < 1.0 / inverse - _IN_FRONT_M)
+        before = self._inverse_depth(near_m)
+        mask = (before > np.float32(1.0 / Z_FAR_M)) & (1.0 / before < 1.0 / inverse - _IN_FRONT_M)
         tint = np.array(HIDDEN, np.float32)
         picture[mask] = ((1.0 - _TINT) * picture[mask] + _TINT * tint).astype(np.uint8)
         outlines, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)

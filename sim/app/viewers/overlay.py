@@ -61,7 +61,7 @@ _DEPTH = (1068, 60, 204, 153)
 _LOW_DEPTH, _SCORE = (1068, 60, 204, 112), (1068, 198, 204, 112)
 _INSET_SHARE = 0.3
 """Side of the picture of a goal, as a share of the height of the camera's picture, over which it lies."""
-_NAMES_PX = 104
+_NAMES_PX = 103
 """Width of a column of names of categories."""
 _MAPS_TOP, _MAP_LEFT, _PLAN_LEFT = 334, 656, 976
 _LEGEND_TOP, _ROW_PX, _COLUMN_PX = _MAPS_TOP + MAP_PX + 5, 14, 98
@@ -249,7 +249,7 @@ class FrameComposer:
         columns = (_CAMERA[0] + _CAMERA[2] - left) // _NAMES_PX
         rows, goal_ids = _SMALL[1] // _ROW_PX, ids_of(self.goal)
         together = np.concatenate([segment.ravel() for segment in segments])
-        for place, category in enumerate(names_in_sight(together, self.goal)[: columns * rows]):
+        for place, category in enumerate(names_in_sight(together, self.goal, columns * rows)):
             x, y = left + (place // rows) * _NAMES_PX, _SMALL_TOP + (place % rows) * _ROW_PX
             red, green, blue = PALETTE[category].tolist()
             is_goal = category in goal_ids
@@ -275,12 +275,16 @@ class FrameComposer:
         write(frame, words, (left, top - 6), width, 13, PALE)
 
 
-def names_in_sight(semantic: NDArray[np.uint8], goal: str) -> list[int]:
-    """Returns the mpcat40 ids of the visible categories: the goal first if it is visible, then by number."""
+def names_in_sight(semantic: NDArray[np.uint8], goal: str, most: int = len(MPCAT40)) -> list[int]:
+    """Returns the mpcat40 ids of the `most` largest visible categories.
+
+    The goal is the first if it is visible. The others are in the order of their numbers.
+    """
     counts = np.bincount(semantic.ravel(), minlength=len(MPCAT40))
-    goal_ids = ids_of(goal)
-    shown = [i for i in np.flatnonzero(counts >= MIN_SHARE * semantic.size).tolist() if i not in goal_ids]
-    return [i for i in goal_ids if counts[i]] + shown
+    goal_ids = [i for i in ids_of(goal) if counts[i]]
+    others = [i for i in np.flatnonzero(counts >= MIN_SHARE * semantic.size).tolist() if i not in goal_ids]
+    largest = sorted(others, key=lambda i: -counts[i])[: max(0, most - len(goal_ids))]
+    return goal_ids + sorted(largest)
 
 
 def ids_of(goal: str) -> tuple[int, ...]:

@@ -22,12 +22,12 @@ from sim.app.composition.segmenters import make_segmenter
 from sim.app.evaluation.rollout import play_episode
 from sim.app.options import RunOptions
 from sim.app.viewers import overlay, video
-from sim.app.viewers.chase import ChaseView, hidden_obstacles
+from sim.app.viewers.chase import SECTION, ChaseView, hidden_obstacles
 from sim.app.viewers.topview import BLOCKED, FREE, INSTANCE, OBSTACLE, SHORTEST, SUCCEEDS, TopView, whole_storey_m
 from sim.app.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, video_file
 from sim.app.viewers.viewer import VIEWER_IMAGES, Moment
 from sim.core.geometry.pose import Pose
-from sim.core.interface import MPCAT40, Action, CameraModel, ConfigError, Scores, SuccessRule
+from sim.core.interface import MPCAT40, MPCAT40_ID, Action, CameraModel, ConfigError, Scores, SuccessRule
 from sim.core.option_types import meanings
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -335,6 +335,22 @@ def test_the_score_of_the_goal_is_bright_where_it_is_high_and_grey_where_it_is_z
     picture = overlay.score_picture(np.full((96, 128, 3), 100, np.uint8), target).astype(int)
     assert tuple(picture[50, 10]) == (50, 50, 50)
     assert picture[50, 120].sum() > 500
+
+
+def test_a_legend_without_room_for_all_names_has_those_of_the_largest_areas() -> None:
+    wall, bed, shelving, misc = (MPCAT40_ID[name] for name in ("wall", "bed", "shelving", "misc"))
+    semantic = np.full((10, 100), misc, np.uint8)
+    semantic[:, :10], semantic[:, 10:30], semantic[:, 30:31] = wall, shelving, bed
+    assert overlay.names_in_sight(semantic, "bed", 3) == [bed, shelving, misc]
+    assert len(overlay.names_in_sight(semantic, "bed")) == 4
+
+
+def test_what_the_near_plane_cuts_through_is_a_solid_section(env: ObjectNavEnv) -> None:
+    env.reset(options={"episode": replace(EPISODE, start=Pose(-2.7, 0.0, 0.0))})
+    view = ChaseView(env.scene, width_px=200, height_px=120)
+    picture = view.render()
+    view.close()
+    assert (picture == SECTION).all(axis=-1).mean() > 0.01  # the wall at x = -3 m
 
 
 def test_the_robot_stands_in_the_middle_of_the_chase_view_and_a_wall_behind_it_does_not_hide_it(
