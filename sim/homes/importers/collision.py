@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import binary_fill_holes
+from scipy.ndimage import binary_fill_holes, label
 
 from sim.core.errors import HouseError
 from sim.homes.housegen.imported.scene_files import library
@@ -39,7 +39,8 @@ def collision_boxes(corners_m: NDArray[np.float64], *, is_filled: bool = False) 
 
     Args:
         corners_m: the triangles (m, 3, 3).
-        is_filled: the inside of closed outlines of each level is filled too, so that no free place remains there.
+        is_filled: the inside of closed outlines of each level is filled too, so that no free place remains there; the
+            inside of a ring that has nothing above or below, such as a skirting board, is free.
     """
     size_m, cell_m = np.ptp(corners_m.reshape(-1, 3), axis=0), CELL_M
     while np.prod(size_m / cell_m + 2.0) > MAX_CELLS:
@@ -54,8 +55,11 @@ def collision_boxes(corners_m: NDArray[np.float64], *, is_filled: bool = False) 
     filled[tuple(index.T)] = True
     inner = np.zeros_like(filled)
     if is_filled:
+        is_covered = filled.any(axis=2)
         for level in range(int(index[:, 2].max()) + 1):
-            inner[:, :, level] = np.asarray(binary_fill_holes(filled[:, :, level])) & ~filled[:, :, level]
+            holes = np.asarray(label(binary_fill_holes(filled[:, :, level]) & ~filled[:, :, level])[0])
+            covered = np.bincount(holes.ravel(), is_covered.ravel()) >= 0.5 * np.bincount(holes.ravel())
+            inner[:, :, level] = (holes > 0) & covered[holes]
     if inner.any():
         cells = np.argwhere(inner)
         index = np.vstack([index, cells, cells])

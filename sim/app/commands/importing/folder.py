@@ -37,7 +37,7 @@ from sim.houses.load import load_house
 
 SourceT = TypeVar("SourceT")
 REPORT_FILE = "import.json"
-VERSION = 3
+VERSION = 4
 """Increased when the same source gives another house."""
 CHUNK = 64
 """Houses that are in memory at a time."""

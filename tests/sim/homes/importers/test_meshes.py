@@ -66,6 +66,14 @@ def test_the_inside_of_furniture_is_filled_and_that_of_walls_is_not() -> None:
     assert not ((hollow[:, :3] < middle) & (middle < hollow[:, 3:])).all(axis=1).any()
 
 
+def test_the_inside_of_a_skirting_board_is_free() -> None:
+    sides = (((0, 0, 0), (4, 0.02, 0.1)), ((0, 3.98, 0), (4, 4, 0.1)),
+             ((0, 0, 0), (0.02, 4, 0.1)), ((3.98, 0, 0), (4, 4, 0.1)))  # fmt: skip
+    ring = triangles_of(Piece("skirting", 0, sides, (0, 0, 0)))
+    boxes, middle = collision_boxes(np.asarray(ring.triangles), is_filled=True), np.array([2, 2, 0.05])
+    assert not ((boxes[:, :3] < middle) & (middle < boxes[:, 3:])).all(axis=1).any()
+
+
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.floats(0.1, 0.9))
 def test_joined_cells_cover_the_filled_cells_once_and_nothing_else(seed: int, share: float) -> None:
