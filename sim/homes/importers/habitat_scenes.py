@@ -117,7 +117,7 @@ class _Reader:
         self._texture_px, self._where = texture_px, where
         self._classes = {entry.id: entry.name for entry in semantics.classes}
         self._templates: dict[tuple[str, str], Template] = {}
-        self._meshes: dict[Path, list[Surface]] = {}
+        self._meshes: dict[tuple[Path, float], list[Surface]] = {}
         self._shapes: dict[tuple[object, ...], Shape] = {}
 
     def placed(self, instance: ObjectInstance, kind: str) -> MeshObject:
@@ -150,21 +150,17 @@ class _Reader:
         """Returns the surfaces of a mesh in our frame, turned and scaled by its configuration and its instance."""
         key = (template.name, template.asset, scale)
         if key not in self._shapes:
-            if template.asset not in self._meshes:
-                self._meshes[template.asset] = read_surfaces(
-                    template.asset, texture_px=self._texture_px, losses=self._losses.changes
+            attributes, mesh = template.attributes, (template.asset, template.attributes.units_to_meters)
+            if mesh not in self._meshes:
+                self._meshes[mesh] = read_surfaces(
+                    mesh[0], unit_m=mesh[1], texture_px=self._texture_px, losses=self._losses.changes
                 )
-            matrix = np.eye(4)
-            matrix[:3, :3] = (
-                Y_UP
-                @ _frame(template.attributes, self._where)
-                @ np.diag(
-                    np.asarray(template.attributes.scale) * np.asarray(scale) * template.attributes.units_to_meters
-                )
-            )
-            if abs(np.linalg.det(matrix)) < 1e-9:
+            factors = np.asarray(attributes.scale) * np.asarray(scale)
+            if np.abs(factors).min() < 1e-9:
                 raise HouseError(f"{self._where}: '{printable(template.name)}' has a scale of 0.")
-            self._shapes[key] = Shape(tuple(surface.moved(matrix) for surface in self._meshes[template.asset]))
+            matrix = np.eye(4)
+            matrix[:3, :3] = Y_UP @ _frame(attributes, self._where) @ np.diag(factors)
+            self._shapes[key] = Shape(tuple(surface.moved(matrix) for surface in self._meshes[mesh]))
         return self._shapes[key]
 
     def movable(self, instance: ObjectInstance, item: MeshObject, ground_m: float) -> MeshObject:

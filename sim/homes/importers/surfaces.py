@@ -91,13 +91,15 @@ def check_installed() -> None:
 
 
 def read_surfaces(
-    file: Path, *, up: Up = "z", texture_px: int | None = None, losses: Counter[str] | None = None
-) -> list[Surface]:
+    file: Path, *, up: Up = "z", unit_m: float = 1.0, texture_px: int | None = None,
+    losses: Counter[str] | None = None,
+) -> list[Surface]:  # fmt: skip
     """Returns the surfaces of a file in our frame, nodes at their places.
 
     Args:
         file: the file.
         up: its upward axis.
+        unit_m: its unit of length, metres.
         texture_px: larger pictures are reduced to this size; None: they stay.
         losses: gets sentences on the losses.
 
@@ -112,8 +114,10 @@ def read_surfaces(
     content = read_bytes(file, what="Mesh", error=HouseError, most=MAX_FILE_BYTES)
     read = functools.partial(read_inside, file.parent)
     scene = load_scene(content, kind, where=where, most=MAX_TRIANGLES, read=read, losses=losses, extra="import")
+    frame = np.diag([unit_m, unit_m, unit_m, 1.0])
+    frame[:3, :3] = frame[:3, :3] @ (Y_UP if up == "y" else np.eye(3))
     try:
-        surfaces = list(_surfaces(scene, texture_px, losses))
+        surfaces = list(_surfaces(scene, frame, texture_px, losses))
     except ObjectNavError:
         raise
     except Exception as error:  # trimesh computes parts of a scene when they are asked for
@@ -122,15 +126,13 @@ def read_surfaces(
         ) from None
     if not surfaces:
         raise HouseError(f"{where} has no triangles.{' '.join(['', *losses][:3])}")
-    if up == "y":
-        turn = np.eye(4)
-        turn[:3, :3] = Y_UP
-        surfaces = [surface.moved(turn) for surface in surfaces]
     return surfaces
 
 
-def _surfaces(scene: Any, texture_px: int | None, losses: Counter[str]) -> Iterator[Surface]:
-    """Yields the surfaces of a scene of trimesh."""
+def _surfaces(
+    scene: Any, frame: NDArray[np.float64], texture_px: int | None, losses: Counter[str]
+) -> Iterator[Surface]:
+    """Yields the surfaces of a scene of trimesh, moved by a 4 x 4 matrix."""
     painted = dict[int, NDArray[np.uint8] | None]()
     trimesh = library("trimesh", extra="import")
     for node in scene.graph.nodes_geometry:
@@ -147,7 +149,7 @@ def _surfaces(scene: Any, texture_px: int | None, losses: Counter[str]) -> Itera
         surface = Surface(
             str(node), str(getattr(material, "name", None) or ""), vertices, faces,
             _paint(mesh, material, texture_px, painted, losses), _face_ids(mesh),
-        ).moved(np.asarray(transform, dtype=np.float64))  # fmt: skip
+        ).moved(frame @ np.asarray(transform, dtype=np.float64))  # fmt: skip
         if is_near(surface.vertices_m, str(node), losses):
             yield surface
 

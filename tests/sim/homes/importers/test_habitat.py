@@ -22,9 +22,10 @@ from sim.core.errors import ConfigError, HouseError
 from sim.episodes.splits import load_split
 from sim.homes.importers.habitat import find_sources, import_source
 from sim.homes.importers.habitat_episodes import read_scenes, scene_name
-from sim.homes.importers.habitat_files import ObjectInstance, SceneInstance, read_dataset
+from sim.homes.importers.habitat_files import ObjectInstance, SceneInstance, Semantics, read_dataset
 from sim.homes.importers.habitat_names import category_of
 from sim.homes.importers.habitat_scans import read_hm3d, read_hm3d_text, read_house_text
+from sim.homes.importers.habitat_scenes import _Reader
 from sim.homes.importers.losses import Losses
 from sim.homes.importers.mesh_house import MeshConfig
 from sim.houses.geoms import data_at_rest
@@ -34,7 +35,7 @@ from sim.houses.load import load_house
 from sim.houses.proposals import geom_box
 from sim.world.check import check_own_house
 from tests.helpers import wording
-from tests.helpers.scanned import write_dataset, write_episodes, write_hm3d, write_mp3d
+from tests.helpers.scanned import trimesh, write_dataset, write_episodes, write_hm3d, write_mp3d
 
 SAMPLES = Path(__file__).parents[5] / "shared" / "worlds" / "habitat"
 INSTANCES = {"bed": 1, "chair": 1, "picture": 1, "plant": 1, "table": 1}
@@ -257,6 +258,18 @@ def test_a_scene_of_too_many_instances_is_refused_before_they_are_placed(
     monkeypatch.setattr("sim.homes.importers.mesh_house.MAX_OBJECTS", 2)
     monkeypatch.setattr("sim.homes.importers.habitat_scenes.read_surfaces", lambda *_, **__: pytest.fail("it was read"))
     assert re.search(r"it has \d+ objects; at most 2 are allowed", failure(write_dataset(tmp_path)))
+
+
+def test_a_mesh_may_have_millimetres_and_its_instance_a_small_scale(tmp_path: Path) -> None:
+    file = write_dataset(tmp_path)
+    mesh = trimesh.load(tmp_path / "objects" / "thing_5.glb")
+    mesh.apply_scale(1000.0).export(tmp_path / "objects" / "thing_5.glb")
+    config = tmp_path / "objects" / "thing_5.object_config.json"
+    config.write_text(json.dumps(json.loads(config.read_text()) | {"units_to_meters": 0.001}))
+    instance = ObjectInstance("thing_5", non_uniform_scale=(0.5, 1.0, 1.0), translation_origin="asset_local")
+    reader = _Reader(read_dataset(file), Semantics(), SceneInstance(instance), Losses(), 64, "Scene")
+    size_m = np.ptp(reader.placed(instance, "objects").corners_m.reshape(-1, 3), axis=0)
+    assert size_m == pytest.approx([0.5 * 1.9, 1.5, 0.5], abs=1e-4)  # the bed
 
 
 @pytest.mark.costly
