@@ -60,6 +60,8 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     ),
 }  # fmt: skip
 """For each category, words that name it, in addition to the category's own name."""
+PARTS = ("seat", "seats")
+"""Words for a part of a larger object, if another word says which one: `toilet_seat`, or a seat in the body `sofa`."""
 MIN_ENDING = 4
 """A word with at least this many characters is also found at the end of a longer one: `hingecabinet`, `backwall`."""
 FLAT_M = 0.3
@@ -146,7 +148,7 @@ def void_objects(model: mujoco.MjModel, labels: Labels) -> dict[str, list[int]]:
 
 
 def category_of_name(name: str) -> str | None:
-    """Returns the category of a name by its last word of `WORDS` or its last AI2-THOR type, or None."""
+    """Returns the category of a name by its last word of `WORDS` or its last name of the table, or None."""
     words = words_of(name)
     joined = "_".join(words)
     for category in MPCAT40:
@@ -154,7 +156,8 @@ def category_of_name(name: str) -> str | None:
             return category
     for end in range(len(words), 0, -1):
         if category := category_of_ending(words[:end]) or _category_of_word(words[end - 1]):
-            return category
+            whole = category_of_name("_".join(words[: end - 1])) if words[end - 1] in PARTS else None
+            return whole or category
     return None
 
 
@@ -205,7 +208,8 @@ def _by_name(names: list[str]) -> Iterator[Proposal]:
     around = None
     for name in reversed(names):
         category = category_of_name(name)
-        if category is not None and category != around:
+        is_part = around is not None and words_of(name)[-1:] in [(word,) for word in PARTS]
+        if category is not None and category != around and not is_part:
             yield Proposal(name, category, "name")
             around = category
 

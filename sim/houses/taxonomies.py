@@ -50,7 +50,7 @@ def words_of(name: str) -> tuple[str, ...]:
 
 
 def category_of_ending(words: tuple[str, ...]) -> str | None:
-    """Returns the category of the longest AI2-THOR type of at least two words that `words` end with, or None."""
+    """Returns the category of the longest name of at least two words in the table that `words` end with, or None."""
     for first in range(len(words) - 1):
         if category := _by_words().get(words[first:]):
             return category
@@ -59,4 +59,5 @@ def category_of_ending(words: tuple[str, ...]) -> str | None:
 
 @functools.cache
 def _by_words() -> Mapping[tuple[str, ...], str]:
-    return {words_of(name): entry.category for name, entry in entries("ai2thor").items()}
+    names = entries("habitat") | entries("ai2thor")
+    return {words_of(name): entry.category for name, entry in names.items()}

@@ -33,6 +33,12 @@ NAMES = {
     "ClothesDryer": "appliances",
     "Doorframe_Double_5": "door",
     "dining_table_lamp": "lighting",
+    "ceiling_light.002": "lighting",
+    "bath_mat": "floor",
+    "Bedside_Table": "chest_of_drawers",
+    "toilet_seat": "toilet",
+    "sofa_seat_left": "sofa",
+    "car_seat": "chair",
     "//unnamed_geom_3": None,
     "panda0_link0": None,
     "cannon": None,
@@ -94,6 +100,12 @@ def test_a_named_part_with_the_category_of_its_body_is_no_instance_of_its_own() 
     )
     labels = read_labels(model, rules=rules_of(propose(model)))
     assert {each.name: len(each.geom_ids) for each in labels.instances} == {"g": 1, "table": 2, "vase": 1}
+
+
+def test_a_seat_of_a_sofa_is_no_chair() -> None:
+    model = _model('<body name="sofa"><geom name="seat" size="0.4"/><geom name="sofa_back" size="0.4"/></body>')
+    labels = read_labels(model, rules=rules_of(propose(model)))
+    assert {each.name: each.category for each in labels.instances} == {"g": "floor", "sofa": "sofa"}
 
 
 def test_a_geom_without_any_name_has_its_number_as_a_name() -> None:
