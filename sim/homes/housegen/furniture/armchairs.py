@@ -8,8 +8,8 @@ from __future__ import annotations
 import itertools
 import math
 
-from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts import BOTH_SIDES
 from sim.homes.housegen.furniture.shapes import Ring, arc_wall, chamfered_box, loft
 from sim.homes.housegen.furniture.workbench import Workbench
@@ -156,8 +156,19 @@ def egg_chair(w: Workbench) -> None:
     w.mesh(loft(back, 12, hull=True), (0.0, 0.0, 0.0), cloth)
     for side in BOTH_SIDES:
         w.mesh(chamfered_box((1.2 * r, 0.09, 0.30), 0.04), (-0.25 * r, side * 0.86 * r, seat + 0.10), cloth, tilt=-0.1)
-    parts.star_base(w, 0.34, 4, steel, seat - 0.12, castors=False)
+    _star_base(w, steel, seat - 0.12)
     w.top((-0.4 * r, 0.7 * r), (-0.6 * r, 0.6 * r), seat, "seat")
+
+
+def _star_base(w: Workbench, look: Look, top: float) -> None:
+    """Adds a column with four feet in a star, on glides."""
+    dark, radius, low = w.look("rubber"), 0.34, 0.02
+    for i in range(4):
+        angle = math.tau * i / 4 + 0.3
+        x, y = radius * math.cos(angle), radius * math.sin(angle)
+        w.bar((0.0, 0.0, low + 0.03), (x, y, low), 0.04, 0.025, look)
+        w.cylinder((x, y), (0.0, low), 0.014, dark)
+    w.cylinder((0.0, 0.0), (low, top), 0.026, w.look("chrome") if w.chance(0.5) else look)
 
 
 def cane_chair(w: Workbench) -> None:

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts import BOTH_SIDES
 from sim.homes.housegen.furniture.shapes import chamfered_box
-from sim.homes.housegen.furniture.workbench import Workbench
+from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 
 def wardrobe_doors(w: Workbench) -> None:
@@ -262,8 +263,42 @@ def slatted_sideboard(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 1.60), w.depth(0.40, 0.46), w.length(0.72, 0.84)
     wood, body, metal = w.look("wood"), w.look("lacquer"), w.look("iron")
     x, y = parts.case(w, depth, width, (0.16, height), body)
-    parts.styled_doors(w, x, y, (0.18, height - 0.03), 3, wood, metal, "slats", "slot")
-    parts.feet(w, (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), 0.17, "sled", metal)
+    _slatted_doors(w, x, y, (0.18, height - 0.03), wood)
+    posts = (-0.5 * depth + 0.06, 0.5 * depth - 0.06)
+    for edge in (-0.5 * width + 0.06, 0.5 * width - 0.06):
+        w.box((-0.5 * depth + 0.03, 0.5 * depth - 0.03), (edge - 0.014, edge + 0.014), (0.0, 0.02), metal)
+        for post in posts:
+            w.box((post - 0.012, post + 0.012), (edge - 0.014, edge + 0.014), (0.02, 0.17), metal)
+
+
+def _slatted_doors(w: Workbench, x: float, y: Range, z: Range, look: Look) -> None:
+    """Adds three hinged doors of slats side by side, each with a slot as its handle."""
+    joints = (y[0] + 0.003, y[1] - 0.003), (z[0] + 0.003, z[1] - 0.003)
+    w.box((x, x + parts.SHADOW_M), *joints, parts.darker(look), solid=False)
+    pitch, tall = (y[1] - y[0]) / 3, z[1] - z[0]
+    up, half = z[0] + 0.68 * tall, 0.5 * min(0.18, 0.5 * tall)
+    face = x + parts.FRONT_M
+    for i in range(3):
+        left = y[0] + i * pitch
+        _slatted_front(
+            w, x, (left + parts.GAP_M, left + pitch - parts.GAP_M), (z[0] + parts.GAP_M, z[1] - parts.GAP_M), look
+        )
+        hand = left + (pitch - 0.035 if i % 2 == 0 else 0.035)
+        slot = (hand - 0.007, hand + 0.007), (up - half - 0.006, up + half + 0.006)
+        w.box((face - 0.002, face + 0.002), *slot, w.look("dark"), solid=False)
+
+
+def _slatted_front(w: Workbench, x: float, y: Range, z: Range, look: Look) -> None:
+    """Adds a board with two to seven horizontal slats before a dark field."""
+    face = x + parts.FRONT_M
+    w.box((x, face), y, z, look, solid=False)
+    edge = min(0.06, 0.22 * (y[1] - y[0]), 0.22 * (z[1] - z[0]))
+    y, z = (y[0] + edge, y[1] - edge), (z[0] + edge, z[1] - edge)
+    w.box((x, face + 0.001), y, z, parts.darker(look, 0.5), solid=False)
+    rows = max(2, min(7, round((z[1] - z[0]) / 0.12)))
+    step = (z[1] - z[0]) / rows
+    for i in range(rows):
+        w.box((x, face + 0.008), y, (z[0] + i * step, z[0] + (i + 0.7) * step), look, solid=False)
 
 
 STYLES = (

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from sim.homes.housegen.furniture.item import Look, MeshShape
+from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts.looks import glass_edge, tinted_glass
 from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, footprint
-from sim.homes.housegen.furniture.shapes import hoop, named_mesh
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 GLASS_EDGE_M = 0.008
@@ -36,19 +33,10 @@ def slab(w: Workbench, depth: float, width: float, z: Range, look: Look) -> tupl
 
 
 def round_top(w: Workbench, radius: float, z: Range, look: Look) -> None:
-    """Adds a round top on which objects may stand; one of glass is tinted and has an opaque edge."""
-    if look.rgba[3] < 1.0:
-        look = tinted_glass(look)
-        edge = hoop(radius + 0.001, GLASS_EDGE_M, z[1] - z[0] + 0.002)
-        w.mesh(edge, (0.0, 0.0, 0.5 * (z[0] + z[1])), glass_edge(look), solid=False)
+    """Adds a round top on which objects may stand."""
     w.cylinder((0.0, 0.0), z, radius, look)
     half = 0.65 * radius
     w.top((-half, half), (-half, half), z[1])
-
-
-def top_surface(w: Workbench, x: Range, y: Range, z: float) -> None:
-    """Declares the top of a case, 4 cm inside its edges, as a surface on which objects may stand."""
-    w.top((x[0] + 0.04, x[1] - 0.04), (y[0] + 0.04, y[1] - 0.04), z)
 
 
 def case(w: Workbench, depth: float, width: float, z: Range, look: Look, *, foot: float = 0.0) -> tuple[float, Range]:
@@ -72,35 +60,6 @@ def open_case(w: Workbench, x: Range, y: Range, z: Range, board: float, look: Lo
     for low in (z[0], z[1] - board):
         w.box(x, (y[0] + board, y[1] - board), (low, low + board), look)
     w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (z[0] + board, z[1] - board), look)
-
-
-def prism(outline: Sequence[tuple[float, float]], height: float) -> MeshShape:
-    """Returns an upright prism from z = 0; its star-shaped outline runs counter-clockwise seen from above."""
-    n = len(outline)
-    points = np.asarray(outline, dtype=np.float64)
-    ring = np.vstack([points, points.mean(axis=0)])
-    vertices = np.vstack([np.column_stack([ring, np.full(n + 1, z)]) for z in (0.0, height)])
-    faces = []
-    for i in range(n):
-        j, up = (i + 1) % n, n + 1
-        faces += [(i, j, up + j), (i, up + j, up + i), (n, j, i), (up + n, up + i, up + j)]
-    return named_mesh("prism", vertices, faces)
-
-
-def shelf_objects(w: Workbench, x: Range, y: Range, z: float, count: int, room: float) -> None:
-    """Adds a row of up to `count` books, boxes, bowls and vases to a shelf with `room` metres of free height."""
-    pitch = (y[1] - y[0]) / count
-    for i in range(count):
-        at, tallest = y[0] + (i + 0.5) * pitch, min(0.8 * room, 0.24)
-        half = min(0.42 * pitch, 0.09)
-        middle = 0.5 * (x[0] + x[1])
-        kind = w.choice(("book", "pot", "ceramic", "cardboard", "none"))
-        if kind in ("book", "cardboard"):
-            deep = min(0.1, 0.35 * (x[1] - x[0]))
-            high = z + w.length(0.5, 0.95) * tallest
-            w.box((middle - deep, middle + deep), (at - half, at + half), (z, high), w.new_look(kind), solid=False)
-        elif kind != "none":
-            w.cylinder((middle, at), (z, z + w.length(0.3, 0.8) * tallest), 0.8 * half, w.new_look(kind), solid=False)
 
 
 def worktop(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: tuple[Range, Range] | None) -> None:

@@ -31,25 +31,3 @@ def glass_edge(glass: Look) -> Look:
 def wood_look(w: Workbench, painted: float = 0.45) -> Look:
     """Returns lacquer with the probability `painted`, otherwise plain wood."""
     return w.look("lacquer") if w.chance(painted) else w.look("wood")
-
-
-def fitting_look(w: Workbench) -> Look:
-    """Returns the metal of taps, pipes and hooks."""
-    return w.look(w.choice(("chrome", "chrome", "brass", "dark", "steel")))
-
-
-def sanitary_look(w: Workbench) -> Look:
-    """Returns the material of a basin or a shower tray."""
-    return w.look(w.choice(("ceramic", "ceramic", "ceramic", "stone", "steel", "plastic")))
-
-
-def upholstery_look(w: Workbench, leather: float = 0.35) -> Look:
-    """Returns leather with the probability `leather`, otherwise plain or bright cloth."""
-    if w.chance(leather):
-        return w.look("leather")
-    return w.look("bright") if w.chance(0.2) else w.look("fabric")
-
-
-def tube_look(w: Workbench) -> Look:
-    """Returns the metal or the paint of tubes and wires."""
-    return w.look(w.choice(("chrome", "iron", "lacquer", "brass")))

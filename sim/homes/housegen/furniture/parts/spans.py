@@ -8,11 +8,6 @@ BOTH_SIDES = (-1, 1)
 """The signs of the two sides of an axis."""
 
 
-def centred(middle: float, width: float) -> Range:
-    """Returns the range of this width around `middle`."""
-    return middle - 0.5 * width, middle + 0.5 * width
-
-
 def on_side(side: int, near: float, far: float) -> Range:
     """Returns the range between two distances from zero, on the side with the sign `side`."""
     return min(side * near, side * far), max(side * near, side * far)
