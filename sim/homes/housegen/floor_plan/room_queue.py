@@ -86,7 +86,6 @@ class RoomQueue:
         scale: float,
         *,
         gap_m: float = 0.0,
-        first: Sequence[Group] = (),
         kinds: frozenset[str] | None = None,
     ) -> Row:
         """Returns a row of rooms that can be fitted to a length; they are removed from the queue.
@@ -97,13 +96,12 @@ class RoomQueue:
             depth_m: its depth.
             scale: size of the rooms relative to the usual one.
             gap_m: width of the gap for a branch corridor; 0 for none.
-            first: groups that the row gets before others.
             kinds: kinds of rooms that it may have; all when None.
 
         Raises:
             PlanError: no rooms fit.
         """
-        taken: list[Group] = [*first]
+        taken: list[Group] = []
         while True:
             low, usual, high = _widths_m(taken, depth_m, scale, gap_m)
 

@@ -135,16 +135,14 @@ def _place_nightstands(layout: RoomLayout, source: FurnitureSource, bed: Placeme
                 break
 
 
-def dining_group(
-    layout: RoomLayout, source: FurnitureSource, *, around_m: float = 0.75, near: tuple[float, float] | None = None
-) -> Placement | None:
+def dining_group(layout: RoomLayout, source: FurnitureSource, *, around_m: float = 0.75) -> Placement | None:
     """Places a table with chairs at its sides, a lamp above it and perhaps a rug under it.
 
     Returns None also where the home has another dining table nearby.
     """
     long_m = LONG_TABLE_M if layout.kind == "dining_room" and layout.inner.area_m2 > LARGE_DINING_M2 else None
     for width_m, least in ((long_m, 0.65), (1.3, 0.7), (0.85, 0.0)):
-        table = _table_with_chairs(layout, source, width_m, least, around_m, near)
+        table = _table_with_chairs(layout, source, width_m, least, around_m)
         if table is not None:
             break
     else:
@@ -160,12 +158,7 @@ def dining_group(
 
 
 def _table_with_chairs(
-    layout: RoomLayout,
-    source: FurnitureSource,
-    width_m: float | None,
-    least: float,
-    around_m: float,
-    near: tuple[float, float] | None,
+    layout: RoomLayout, source: FurnitureSource, width_m: float | None, least: float, around_m: float
 ) -> Placement | None:
     """Places a table of a width away from the walls, with chairs on both sides; None if it does not fit."""
     before = layout.snapshot()
@@ -176,7 +169,7 @@ def _table_with_chairs(
     seats = _seats(source, item, chair)
     half = chair.size_m[1] / 2
     spots = [(x - 0.2 * math.cos(turn), y - 0.2 * math.sin(turn), half) for x, y, turn in seats]
-    table = put_in_middle(layout, source.rng, item, spots, around_m=around_m, least=least, apart_m=0.3, near=near)
+    table = put_in_middle(layout, source.rng, item, spots, around_m=around_m, least=least, apart_m=0.3)
     if table is None:
         return None
     if not _is_near_table(source, table):

@@ -135,12 +135,9 @@ class Workbench:
         """Adds a sphere."""
         self.add("sphere", (radius,), at, np.eye(3), look, solid=solid)
 
-    def ellipsoid(
-        self, at: Point, half: Point, look: Look, *, solid: bool = True, tilt: float = 0.0, turn: float = 0.0
-    ) -> None:
-        """Adds an ellipsoid with these half axes, tilted about y, then turned about z."""
-        rotation = matrix_from_euler(0.0, 0.0, turn) @ matrix_from_euler(0.0, tilt, 0.0)
-        self.add("ellipsoid", half, at, rotation, look, solid=solid)
+    def ellipsoid(self, at: Point, half: Point, look: Look, *, solid: bool = True, tilt: float = 0.0) -> None:
+        """Adds an ellipsoid with these half axes, tilted about y."""
+        self.add("ellipsoid", half, at, matrix_from_euler(0.0, tilt, 0.0), look, solid=solid)
 
     def mesh(
         self, shape: MeshShape, at: Point, look: Look, *, solid: bool = True, roll: float = 0.0, tilt: float = 0.0,

@@ -131,11 +131,11 @@ class Sketch:
 
     def add_movable(
         self, category: str, geoms: list[Geom], mass_kg: float, friction: float, *,
-        at: tuple[float, float] = (0.0, 0.0), yaw_rad: float = 0.0, rolls: bool = False,
+        at: tuple[float, float] = (0.0, 0.0), yaw_rad: float = 0.0,
     ) -> None:  # fmt: skip
         """Adds an object that the robot can push."""
         item = _item(category, self.kind, geoms)
-        movable = as_movable(item, mass_kg, friction, rolls=rolls)
+        movable = as_movable(item, mass_kg, friction)
         self._parts.append(Part(self._place(item, at, yaw_rad), movable=movable))
 
     def look(self, material: str) -> Look:

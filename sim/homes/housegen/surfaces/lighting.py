@@ -66,30 +66,27 @@ def draw_views(rng: np.random.Generator, pool: Pool, time: str) -> dict[Side, Lo
     return {side: _view(scenes[int(rng.integers(len(scenes)))], time) for side in sides}
 
 
-def draw_lamps(
-    rng: np.random.Generator, plan: FloorPlan, ceiling_m: float, time: str = "noon", floor_m: float = 0.0
-) -> list[Lamp]:
+def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float, time: str) -> list[Lamp]:
     """Returns daylight from three sides, a reflection from the floors, and lamps in each room, the largest room first.
 
     Fixed-function OpenGL has eight lights. Four are directional; `sim.renderer.lamps` chooses the lamps in view for the
     others, and other viewers take the first ones. Directional lights cast no shadow, because the ceiling would block
-    them. A storey above has lamps only: the daylight of the storey below reaches it.
+    them. A storey above keeps only the lamps of its rooms: the daylight of the storey below reaches it.
 
     Args:
         rng: draws directions, strengths and colours.
         plan: the rooms of the storey.
         ceiling_m: height of the ceilings above the floor.
         time: a key of `DAYLIGHT`.
-        floor_m: height of the storey's floor.
     """
     day = DAYLIGHT[time]
-    lamps = _daylight(rng, plan, ceiling_m, day) if floor_m == 0.0 else []
+    lamps = _daylight(rng, plan, ceiling_m, day)
     for room in sorted(plan.rooms, key=lambda room: -room.rect.area_m2):
         colours = _LAMP_COLOURS.get(room.kind, (_NEUTRAL,))
         colour = colours[int(rng.integers(len(colours)))]
         strength = day.lamps * float(rng.uniform(0.82, 1.15)) * (_DIM if rng.random() < _DIM_SHARE else 1.0)
         for x, y in _lamp_places(room.rect):
-            at = (round(x, 2), round(y, 2), round(floor_m + ceiling_m - 0.25, 2))
+            at = (round(x, 2), round(y, 2), round(ceiling_m - 0.25, 2))
             lamps.append(Lamp(at, _tinted(strength, colour), shadow=True))
     return lamps
 
