@@ -8,6 +8,7 @@ lie in the folder of the file or below it.
 from __future__ import annotations
 
 import functools
+import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -147,11 +148,18 @@ def _surfaces(
             continue
         material = getattr(mesh.visual, "material", None)
         surface = Surface(
-            str(node), str(getattr(material, "name", None) or ""), vertices, faces,
+            _name_of(scene, str(node)), str(getattr(material, "name", None) or ""), vertices, faces,
             _paint(mesh, material, texture_px, painted, losses), _face_ids(mesh),
         ).moved(frame @ np.asarray(transform, dtype=np.float64))  # fmt: skip
         if is_near(surface.vertices_m, str(node), losses):
             yield surface
+
+
+def _name_of(scene: Any, node: str) -> str:
+    """Returns the name of a node; for each material of one of a glTF file, trimesh makes a child with a random name."""
+    names, parent = scene.metadata["names"], str(scene.graph.transforms.parents.get(node))
+    made = node not in names and re.fullmatch(f"{re.escape(parent)}_[0-9a-f]{{6}}", node)
+    return names.get(parent, parent) if made else names.get(node, node)
 
 
 def is_near(vertices_m: NDArray[np.float64], node: str, losses: Counter[str]) -> bool:

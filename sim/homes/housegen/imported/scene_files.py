@@ -61,7 +61,7 @@ def load_scene(
     content: bytes, kind: str, *, where: str, most: int, read: Callable[[str], bytes], losses: Counter[str],
     extra: str = "models",
 ) -> Any:  # fmt: skip
-    """Returns trimesh's scene of a file.
+    """Returns trimesh's scene of a file; `metadata["names"]` has the names of glTF nodes by trimesh's.
 
     Args:
         content: of the file.
@@ -76,9 +76,9 @@ def load_scene(
         HouseError: the file cannot be read or announces too much; one line.
         ConfigError: trimesh is not installed.
     """
-    trimesh = library("trimesh", extra=extra)
+    trimesh, names = library("trimesh", extra=extra), dict[str, str]()
     if kind in ("glb", "gltf"):
-        _require_sane_gltf(content, kind, where, read, losses)
+        names = _node_names(content, kind, where, read, losses)
     elif kind == "ply":
         _require_sane_ply(content, where)
     logging.getLogger("trimesh").addHandler(_SILENT)  # else Python prints its tracebacks of pictures that are missing
@@ -97,6 +97,7 @@ def load_scene(
         ) from None
     if total > most:
         raise HouseError(f"{where} has more than {most:,} triangles or vertices.")
+    scene.metadata["names"] = names
     return scene
 
 
@@ -143,6 +144,8 @@ class _Accessor(Struct):
 
 class _Node(Struct):
     children: list[int] = []
+    name: str = ""
+    mesh: _Index | None = None
 
 
 class _Primitive(Struct):
@@ -152,6 +155,7 @@ class _Primitive(Struct):
 
 class _Mesh(Struct):
     primitives: list[_Primitive] = []
+    name: str = ""
 
 
 class _Part(Struct):
@@ -182,10 +186,15 @@ def gltf_parts(content: bytes, where: str) -> Iterator[str]:
     yield from filter(None, (part.file for part in (*parts.buffers, *parts.images)))
 
 
-def _require_sane_gltf(
+def _node_names(
     content: bytes, kind: str, where: str, read: Callable[[str], bytes], losses: Counter[str]
-) -> None:
-    """Raises HouseError if a glTF file announces too much, is compressed, or has a loop of nodes."""
+) -> dict[str, str]:
+    """Returns the names of the nodes of a glTF file, by those that trimesh gives to them.
+
+    A node without a name, which trimesh calls by its number, has the name of its mesh and that number.
+
+    Raises HouseError if the file announces too much, is compressed, or has a loop of nodes.
+    """
     text = content
     if kind == "glb":
         if len(content) < 20 or content[:4] != b"glTF":
@@ -208,6 +217,13 @@ def _require_sane_gltf(
     for name in {*document.extensionsRequired, *document.extensionsUsed} & set(_LOST):
         losses[_LOST[name]] += 1
     _require_tree([node.children for node in document.nodes], where)
+    meshes = document.meshes
+    unnamed = {
+        str(number): f"{meshes[node.mesh].name}_{number}"
+        for number, node in enumerate(document.nodes)
+        if not node.name and node.mesh is not None and node.mesh < len(meshes) and meshes[node.mesh].name
+    }
+    return unnamed | {node.name: node.name for node in document.nodes if node.name}
 
 
 def _numbers(document: _Gltf) -> int:

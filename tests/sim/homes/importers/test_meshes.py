@@ -178,6 +178,18 @@ def test_a_triangle_is_read_and_turned_upright(tmp_path: Path) -> None:
     assert surface.corners_m.tolist() == [[[0, 0, 0], [1, 0, 0], [0, 0, 1]]]
 
 
+def test_a_node_of_several_materials_is_one_node_with_the_name_of_the_file(tmp_path: Path) -> None:
+    part = {"attributes": {"POSITION": 0}}
+    named = {
+        "scenes": [{"nodes": [0, 1, 3]}], "meshes": [{"name": "stool", "primitives": [part, part]}],
+        "nodes": [{"name": "Sofa", "mesh": 0}, {"name": "Lamp", "children": [2]}, {"name": "Lamp_00abcd", "mesh": 0},
+                  {"mesh": 0}],
+    }  # fmt: skip
+    (tmp_path / "x.glb").write_bytes(glb({**TRIANGLE, **named}, CORNERS))
+    nodes = Counter(surface.node for surface in read_surfaces(tmp_path / "x.glb"))
+    assert nodes == {"Sofa": 2, "Lamp_00abcd": 2, "stool_3": 2}
+
+
 @settings(max_examples=25, deadline=None)
 @given(st.data())
 def test_any_bytes_are_surfaces_or_one_line(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
