@@ -22,6 +22,7 @@ from sim.core.errors import ConfigError, HouseError, ObjectNavError
 from sim.core.reading import printable, read_bytes, reason_of
 from sim.homes.housegen.imported.scene_files import gltf_parts, library, load_scene
 from sim.homes.housegen.imported.sources import Skipped, path_inside
+from sim.houses.proposals import category_of_name
 
 FORMATS = ("glb", "gltf", "obj", "ply")
 MAX_FILE_BYTES = 1 << 30
@@ -147,19 +148,26 @@ def _surfaces(
             leave_out(str(node), "a triangle names a vertex that does not exist", losses)
             continue
         material = getattr(mesh.visual, "material", None)
+        called = str(getattr(material, "name", None) or "")
         surface = Surface(
-            _name_of(scene, str(node)), str(getattr(material, "name", None) or ""), vertices, faces,
+            _name_of(scene, str(node), called), called, vertices, faces,
             _paint(mesh, material, texture_px, painted, losses), _face_ids(mesh),
         ).moved(frame @ np.asarray(transform, dtype=np.float64))  # fmt: skip
         if is_near(surface.vertices_m, str(node), losses):
             yield surface
 
 
-def _name_of(scene: Any, node: str) -> str:
-    """Returns the name of a node; for each material of one of a glTF file, trimesh makes a child with a random name."""
-    names, parent = scene.metadata["names"], str(scene.graph.transforms.parents.get(node))
-    made = node not in names and re.fullmatch(f"{re.escape(parent)}_[0-9a-f]{{6}}", node)
-    return names.get(parent, parent) if made else names.get(node, node)
+def _name_of(scene: Any, node: str, material: str) -> str:
+    """Returns the name of a node; for each material of one of a glTF file, trimesh makes a child with a random name.
+
+    Sketchfab makes such children, too: `Object_7`, or `Sofa_Leather_0` below `Sofa`. They are parts of the node above.
+    """
+    names, parents = scene.metadata["names"], scene.graph.transforms.parents
+    if node not in names and re.fullmatch(f"{re.escape(str(parents.get(node)))}_[0-9a-f]{{6}}", node):
+        node = str(parents[node])
+    name, above = (names.get(each, each) for each in (node, str(parents.get(node))))
+    is_part = re.fullmatch(r"Object_\d+", name) or (material and name.startswith(f"{above}_{material}_"))
+    return above if is_part and category_of_name(above) is not None else name
 
 
 def is_near(vertices_m: NDArray[np.float64], node: str, losses: Counter[str]) -> bool:

@@ -190,6 +190,20 @@ def test_a_node_of_several_materials_is_one_node_with_the_name_of_the_file(tmp_p
     assert nodes == {"Sofa": 2, "Lamp_00abcd": 2, "stool_3": 2}
 
 
+def test_parts_by_material_belong_to_the_object_above_them(tmp_path: Path) -> None:
+    named = {
+        "nodes": [{"name": "Chair_0", "children": [1, 2]}, {"name": "Object_1", "mesh": 0},
+                  {"name": "Object_2", "mesh": 0}, {"name": "Sofa", "children": [4, 5]},
+                  {"name": "Sofa_Red_0", "mesh": 0}, {"name": "Sofa_cushion", "mesh": 0},
+                  {"name": "Root", "children": [7]}, {"name": "Object_9", "mesh": 0}],
+        "scenes": [{"nodes": [0, 3, 6]}], "materials": [{"name": "Red"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+    }  # fmt: skip
+    (tmp_path / "x.glb").write_bytes(glb({**TRIANGLE, **named}, CORNERS))
+    nodes = Counter(surface.node for surface in read_surfaces(tmp_path / "x.glb"))
+    assert nodes == {"Chair_0": 2, "Sofa": 1, "Sofa_cushion": 1, "Object_9": 1}
+
+
 @settings(max_examples=25, deadline=None)
 @given(st.data())
 def test_any_bytes_are_surfaces_or_one_line(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
