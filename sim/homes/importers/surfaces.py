@@ -201,7 +201,8 @@ def _paint(
         factors = np.asarray(factor, dtype=np.float64).ravel() / 255.0
         if len(factors) in (3, 4) and np.isfinite(factors).all():
             r, g, b, a = (float(v) for v in np.clip([*factors, 1.0][:4], 0.0, 1.0))
-            rgba = (r, g, b, a)
+            is_opaque = getattr(material, "alphaMode", "BLEND") in (None, "OPAQUE")  # None: the default of glTF
+            rgba = (r, g, b, 1.0 if is_opaque else a)
     elif image is not None:
         rgba = WHITE
     colours = getattr(mesh.visual, "vertex_attributes", {}).get("color")

@@ -190,6 +190,14 @@ def test_a_node_of_several_materials_is_one_node_with_the_name_of_the_file(tmp_p
     assert nodes == {"Sofa": 2, "Lamp_00abcd": 2, "stool_3": 2}
 
 
+@pytest.mark.parametrize(("mode", "opacity"), [({}, 1.0), ({"alphaMode": "BLEND"}, 0.2)])
+def test_only_materials_that_blend_are_transparent(mode: dict[str, str], opacity: float, tmp_path: Path) -> None:
+    material = {"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 0.2]}, **mode}
+    meshes = [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}]
+    (tmp_path / "x.glb").write_bytes(glb({**TRIANGLE, "materials": [material], "meshes": meshes}, CORNERS))
+    assert read_surfaces(tmp_path / "x.glb")[0].paint.rgba == pytest.approx((1.0, 0.0, 0.0, opacity))
+
+
 def test_parts_by_material_belong_to_the_object_above_them(tmp_path: Path) -> None:
     named = {
         "nodes": [{"name": "Chair_0", "children": [1, 2]}, {"name": "Object_1", "mesh": 0},
