@@ -33,6 +33,8 @@ WHOLE_SHARE = 0.6
 """A node without a category is the whole home if it extends over this share of its plan along both axes."""
 WHOLE_M = 1.5
 """Least height of such a node."""
+LEVEL_SHARE = 0.2
+"""Least share of the area of floors that is level and faces up; a slab on its edge has less."""
 OTHER = "objects"
 
 
@@ -164,8 +166,7 @@ def _proposals(nodes: Sequence[_Node], by_rule: Mapping[str, str]) -> tuple[Prop
     categories = {**{name: proposal.category for name, proposal in named.items()}, **by_rule}
     floors = [node.shape.corners_m for node in nodes if categories.get(node.name) == "floor"]
     everything = np.concatenate([node.shape.corners_m for node in nodes])
-    size_m = np.ptp(everything.reshape(-1, 3), axis=0)
-    lowest_m = find_levels(np.concatenate(floors) if floors else everything)[0]
+    size_m, lowest_m = np.ptp(everything.reshape(-1, 3), axis=0), _lowest_m(floors, everything)
     for node in nodes:
         if node.name in categories:
             continue
@@ -188,7 +189,7 @@ def _is_whole(node: _Node, home_m: NDArray[np.float64]) -> bool:
 
 
 def _objects(nodes: Sequence[_Node], categories: Mapping[str, str], losses: Losses) -> list[MeshObject]:
-    """Returns the objects of the nodes; without a floor, one is cut out of the walls."""
+    """Returns the objects of the nodes; without a floor, or with rugs only, one is cut out of the walls."""
     objects = []
     for node in nodes:
         category = categories[node.name]
@@ -197,14 +198,43 @@ def _objects(nodes: Sequence[_Node], categories: Mapping[str, str], losses: Loss
             continue
         objects.append(MeshObject(category, node.name, node.shape))
         losses.furniture[category] += 1
-    if not objects or any(item.category == "floor" for item in objects):
+    if not objects:
         return objects
-    lowest_m = find_levels(np.concatenate([item.corners_m for item in objects]))[0]
+    floors, walls = ([item.corners_m for item in objects if item.category == name] for name in ("floor", "wall"))
+    lowest_m = _lowest_m(floors, np.concatenate([item.corners_m for item in objects]))
+    floor_m2, wall_m2 = (sum(_area_m2(part[_is_level(part, lowest_m)]) for part in parts) for parts in (floors, walls))
+    if floor_m2 >= wall_m2:
+        return objects
     cut: list[MeshObject] = []
     for item in objects:
         cut += _cut(item, lowest_m) if item.category == "wall" else [item]
-    losses.changes["No node is a floor; the level triangles of the walls at the lowest level became one."] += 1
+    losses.changes["No node is the floor; the level triangles of the walls at the lowest level became one."] += 1
     return cut
+
+
+def _lowest_m(floors: Sequence[NDArray[np.float64]], everything: NDArray[np.float64]) -> float:
+    """Returns the height of the lowest storey: that of the floors, unless they are too small, as a rug is.
+
+    Raises:
+        NoFloorError: no floor is level, for example because another axis points up.
+    """
+    named = np.concatenate([*floors, everything[:0]])
+    try:
+        return find_levels(named)[0]
+    except NoFloorError:
+        if _area_m2(named[level_triangles(named)]) < LEVEL_SHARE * _area_m2(named):
+            raise
+    return find_levels(everything)[0]
+
+
+def _area_m2(corners_m: NDArray[np.float64]) -> float:
+    """Returns the area of triangles (m, 3, 3)."""
+    normal = np.cross(corners_m[:, 1] - corners_m[:, 0], corners_m[:, 2] - corners_m[:, 0])
+    return float(0.5 * np.linalg.norm(normal, axis=1).sum())
+
+
+def _is_level(corners_m: NDArray[np.float64], height_m: float) -> NDArray[np.bool_]:
+    return level_triangles(corners_m) & (np.abs(corners_m[:, :, 2].mean(axis=1) - height_m) <= LEVEL_M)
 
 
 def _cut(walls: MeshObject, lowest_m: float) -> list[MeshObject]:
@@ -212,8 +242,7 @@ def _cut(walls: MeshObject, lowest_m: float) -> list[MeshObject]:
     floor: list[Surface] = []
     rest: list[Surface] = []
     for surface in walls.shape.surfaces:
-        corners = surface.corners_m
-        level = level_triangles(corners) & (np.abs(corners[:, :, 2].mean(axis=1) - lowest_m) <= LEVEL_M)
+        level = _is_level(surface.corners_m, lowest_m)
         floor += [surface.part(level)] if level.any() else []
         rest += [surface.part(~level)] if not level.all() else []
     parts = (("floor", floor), ("wall", rest))

@@ -36,6 +36,8 @@ STRUCTURE = frozenset(("wall", "floor", "ceiling", "door", "window", "stairs", "
 """Closed outlines of these categories are not filled: a room inside of walls is free."""
 FLAT_M = 0.02
 """Objects that are lower than this above the floor are part of it: rugs do not collide."""
+COVER_M = 0.004
+"""Largest height of a rug above its floor, with which it hides the floor."""
 MIN_VERTICES = 4
 """MuJoCo refuses meshes with fewer; a single triangle gets its last corner again."""
 MIN_TRIANGLES = 24
@@ -275,7 +277,7 @@ class _Builder:
             self._add_object(item, budgets[id(item.shape)])
 
     def _flattened(self, item: MeshObject) -> MeshObject:
-        """Returns a floor in the world; vertices near the level of a storey are moved to that level."""
+        """Returns a floor in the world; vertices near a storey are moved to its level, those of rugs just above it."""
         turn = np.empty(9)
         mujoco.mju_quat2Mat(turn, np.asarray(item.quaternion, dtype=np.float64))
         pose = np.eye(4)
@@ -286,10 +288,11 @@ class _Builder:
             used = np.zeros(len(vertices), dtype=np.bool_)
             used[surface.faces[level_triangles(surface.corners_m)]] = True
             for level in self._levels_m:
-                off = np.abs(vertices[:, 2] - level)
-                near = used & (off <= LEVEL_M)
-                most_m = max(most_m, float(off[near].max(initial=0.0)))
-                vertices[near, 2] = level
+                above = vertices[:, 2] - level
+                near = used & (np.abs(above) <= LEVEL_M)
+                if near.any():
+                    most_m = max(most_m, float(np.abs(above[near]).max()))
+                    vertices[near, 2] = level + np.clip(np.median(above[near]), 0.0, COVER_M)
             made.append(replace(surface, vertices_m=vertices))
         if most_m > 0.01:
             self._losses.changes["A floor was uneven and was made flat."] += 1

@@ -20,6 +20,7 @@ from sim.app.commands.importing import folder
 from sim.app.commands.importing import mesh as command
 from sim.app.commands.importing.folder import Made, Work, file_works, import_all
 from sim.core.errors import ConfigError, EpisodeError, HouseError
+from sim.gl import mujoco
 from sim.homes.importers import mesh_house
 from sim.homes.importers.losses import Losses
 from sim.homes.importers.mesh import files_of, find_files, import_mesh
@@ -30,6 +31,7 @@ from sim.houses.geoms import data_at_rest
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
+from sim.houses.proposals import geom_box
 from sim.world.check import check_own_house
 from tests.helpers import wording
 from tests.helpers.scanned import PIECES, triangles_of, write_glb
@@ -210,6 +212,23 @@ def test_a_home_in_one_node_gets_a_floor_and_walls(tmp_path: Path) -> None:
     scene = import_mesh(tmp_path / "scan.ply", rules={}, up="auto", config=MeshConfig())
     assert scene.house.report["area_m2"] == pytest.approx(32.0, abs=2.0)
     assert any("level triangles of the walls" in each for each in scene.house.report["changes"])
+
+
+@pytest.mark.parametrize("width_m", [1.0, 2.5])
+def test_a_rug_in_a_home_of_one_node_is_not_its_floor_and_hides_it(width_m: float, tmp_path: Path) -> None:
+    home = trimesh.Scene()
+    whole = [triangles_of(piece) for piece in PIECES if piece.kind in ("floor", "wall")]
+    home.add_geometry(trimesh.util.concatenate(whole), node_name="Apartment")
+    home.add_geometry(trimesh.creation.box(bounds=[[1, 1, 0], [1 + width_m, 3, 0.01]]), node_name="Rug")
+    (tmp_path / "flat.glb").write_bytes(home.export(file_type="glb"))
+    house = import_mesh(tmp_path / "flat.glb", rules={}, up="z", config=MeshConfig()).house
+    assert house.report["area_m2"] == pytest.approx(32.0, abs=2.0)
+    text = next(text for name, text in house.files.items() if name.endswith(".xml"))
+    assets = {name: content for name, content in house.files.items() if isinstance(content, bytes)}
+    model = mujoco.MjModel.from_xml_string(str(text), assets)
+    shown = [geom for geom in range(model.ngeom) if "floor" in model.body(model.geom_bodyid[geom]).name]
+    tops_m = sorted(geom_box(model, data_at_rest(model), geom)[1][2] for geom in shown)
+    assert tops_m == pytest.approx([0.0, 0.004], abs=1e-4)
 
 
 @pytest.mark.parametrize(
