@@ -31,6 +31,7 @@ MAX_CORNERS = 10_000
 """Vertices of one face."""
 _LOST = {
     "KHR_texture_basisu": "A file has pictures in the Basis format, which cannot be read; they became plain colours.",
+    "KHR_texture_transform": "A file moves or scales its pictures, which is not read; patterns have another size.",
     "EXT_texture_webp": "A file has pictures in the WebP format, which may have been left out.",
 }
 _REFUSED = {

@@ -198,6 +198,13 @@ def test_only_materials_that_blend_are_transparent(mode: dict[str, str], opacity
     assert read_surfaces(tmp_path / "x.glb")[0].paint.rgba == pytest.approx((1.0, 0.0, 0.0, opacity))
 
 
+def test_pictures_that_a_file_moves_are_reported(tmp_path: Path) -> None:
+    (tmp_path / "x.glb").write_bytes(glb({**TRIANGLE, "extensionsUsed": ["KHR_texture_transform"]}, CORNERS))
+    losses = Counter[str]()
+    read_surfaces(tmp_path / "x.glb", losses=losses)
+    assert "moves or scales its pictures" in str(losses)
+
+
 def test_parts_by_material_belong_to_the_object_above_them(tmp_path: Path) -> None:
     named = {
         "nodes": [{"name": "Chair_0", "children": [1, 2]}, {"name": "Object_1", "mesh": 0},
