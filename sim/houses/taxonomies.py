@@ -59,5 +59,5 @@ def category_of_ending(words: tuple[str, ...]) -> str | None:
 
 @functools.cache
 def _by_words() -> Mapping[tuple[str, ...], str]:
-    names = entries("habitat") | entries("ai2thor")
+    names = {**entries("habitat"), **entries("ai2thor")}
     return {words_of(name): entry.category for name, entry in names.items()}

@@ -57,7 +57,8 @@ def collision_boxes(corners_m: NDArray[np.float64], *, is_filled: bool = False) 
     if is_filled:
         is_covered = filled.any(axis=2)
         for level in range(int(index[:, 2].max()) + 1):
-            holes = np.asarray(label(binary_fill_holes(filled[:, :, level]) & ~filled[:, :, level])[0])
+            inside = np.asarray(binary_fill_holes(filled[:, :, level])) & ~filled[:, :, level]
+            holes = np.asarray(label(inside)[0], dtype=np.int64)  # type: ignore[index]
             covered = np.bincount(holes.ravel(), is_covered.ravel()) >= 0.5 * np.bincount(holes.ravel())
             inner[:, :, level] = (holes > 0) & covered[holes]
     if inner.any():
