@@ -15,7 +15,7 @@ from typing import Any
 
 from sim.app.evaluation.own_code import place_of, text_of
 from sim.app.evaluation.watch import FACTORY_S, is_stop
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, did_you_mean
 
 
 class _TooLong(BaseException):
@@ -56,6 +56,21 @@ def _require_unhidden() -> None:
                 )
 
 
+def _require_module_name(name: str, module: str, attribute: str, prefix: str) -> None:
+    """Raises ConfigError if the user gave the path of a file in place of the name of its module."""
+    if "/" not in module and not Path(module).is_file():
+        return
+    file = Path(module.removesuffix(".py"))
+    if file.is_absolute() or ".." in file.parts:
+        place, file = f", in the folder '{file.parent}' or with it on PYTHONPATH", Path(file.name)
+    else:
+        place = ""
+    raise ConfigError(
+        f"'{name}': '{module}' is a path; give the name of the module: "
+        f"'{prefix}{'.'.join(file.parts)}:{attribute}'{place}."
+    )
+
+
 def import_attribute(
     name: str, explain: Callable[[BaseException], str | None] = lambda error: None, *, prefix: str = ""
 ) -> Any:
@@ -70,6 +85,7 @@ def import_attribute(
         ConfigError: the module cannot be imported, its import does not end within two minutes, or it has no such name.
     """
     module_name, _, attribute = name.removeprefix(prefix).partition(":")
+    _require_module_name(name, module_name, attribute, prefix)
     if "" not in sys.path:
         _require_unhidden()
         sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
@@ -95,4 +111,5 @@ def import_attribute(
     try:
         return vars(module)[attribute]
     except KeyError:
-        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.") from None
+        hint = did_you_mean(attribute, vars(module))
+        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.{hint}") from None

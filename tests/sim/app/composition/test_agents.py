@@ -93,7 +93,12 @@ def test_an_agents_own_option_is_set_from_the_command_line(house: Path, tmp_path
     [
         ("stuborn", "Did you mean 'stubborn'"),
         ("no.such_module:make", "no module 'no'"),
+        ("tests/helpers/agents.py:SPY", "is a path; give the name of the module: 'tests.helpers.agents:SPY'."),
+        ("./tests/helpers/agents:SPY", "'tests.helpers.agents:SPY'."),
+        ("/no/agents.py:SPY", "'agents:SPY', in the folder '/no' or with it on PYTHONPATH."),
+        ("setup.py:make", "'setup:make'."),
         ("tests.helpers.agents:none", "has no 'none'"),
+        ("tests.helpers.agents:SPYY", "has no 'SPYY'. Did you mean 'SPY'?"),
         ("tests.helpers.agents:NUMBER", "AgentSpec"),
     ],
 )
