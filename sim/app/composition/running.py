@@ -70,7 +70,7 @@ def run_missing(
         if not options.keep_results:
             run.require_own_code(code, done)
         if options.retry_errors:
-            console.print(f"{len(again)} episodes that ended with an error are run again.")
+            console.print(f"Episodes that ended with an error and are run again: {len(again)}.")
         todo = [episode for episode in episodes if episode.episode_id not in done]
         console.print(
             f"{options.agent}, {display.counted(len(episodes), 'episode')} of {split['name']} "
@@ -134,7 +134,7 @@ def _report_resumed(run: RunDirectory[EpisodeResult], total: int, todo: int, cod
             soft_wrap=True,
         )
     others = run.record_code(code) if todo else []
-    if others:
+    if others and todo < total:
         console.print(
             f"The existing episodes were run by other code ({', '.join(others)}) than these ({code}).",
             highlight=False,

@@ -299,4 +299,4 @@ def test_a_bad_house_start_or_agent_ends_one_episode_and_errors_can_be_run_again
     assert reasons() == before  # nothing is run again without a request
     assert entry([*command, "--retry-errors"]) == 1
     assert reasons() == before | {"e0": ""}
-    assert "4 episodes that ended with an error are run again" in capsys.readouterr().out
+    assert "Episodes that ended with an error and are run again: 4." in capsys.readouterr().out
