@@ -13,7 +13,7 @@ from functools import cached_property
 import cv2
 import numpy as np
 
-from sim.core.errors import EpisodeError
+from sim.core.errors import EpisodeError, HouseError
 from sim.core.vocabulary import NO_OBJECTS, in_words
 from sim.core.wishes import Beside, Wish
 from sim.gl import mujoco
@@ -122,7 +122,10 @@ class Meaning:
     def objects(self) -> tuple[HouseObject, ...]:
         """All instances. Their geometry is computed on first use: that of a whole house takes seconds."""
         world, data = self._world, self._data
-        facts = read_instance_facts(world.model, world.labels)
+        try:
+            facts = read_instance_facts(world.model, world.labels)
+        except HouseError as error:
+            raise HouseError(f"{self._house}: {error}") from None
         footprints = Footprints(world.model, house_floors(world.model, data, world.labels))
         return tuple(
             HouseObject(

@@ -22,6 +22,7 @@ from sim.gl import mujoco
 from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.hazards import Hazard, read_hazards
 from sim.houses.house import House, Room, read_rooms
+from sim.houses.instance_facts import read_instance_facts
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
 from sim.world.advice import advice
 from sim.world.arrangement import arrangement_faults
@@ -96,15 +97,21 @@ def advise_house(spec: mujoco.MjSpec) -> list[str]:
 def check_own_house(house: House) -> tuple[list[str], list[str]]:
     """Returns the faults of a user's house, and remarks; each is a sentence.
 
-    Faults are places and goals that the robot cannot reach. Overlaps, objects without support and objects that move by
-    themselves are only remarks, because the house can be used. The house may have no room sites.
+    Faults are places and goals that the robot cannot reach, and names, colours and materials in a wrong form. Overlaps,
+    objects without support and objects that move by themselves are only remarks, because the house can be used. The
+    house may have no room sites.
 
     Args:
         house: a house that `load_house` returned.
     """
     compiled = _compiled(house.spec, house.rules)
     remarks = _overlaps(compiled) + _without_support(compiled) + _unstable(compiled.model)
-    return _unreachable(compiled, SuccessRule(), RobotModel()), remarks
+    faults = _unreachable(compiled, SuccessRule(), RobotModel())
+    try:
+        read_instance_facts(compiled.model, compiled.labels)
+    except HouseError as error:
+        faults.append(str(error).rstrip("."))
+    return faults, remarks
 
 
 def _compiled(spec: mujoco.MjSpec, rules: Mapping[str, str] | None) -> _CompiledHouse:

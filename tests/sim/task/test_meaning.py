@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.core.errors import EpisodeError
+from sim.core.errors import EpisodeError, HouseError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action
 from sim.task.objectnav import Task
 from sim.world.world import World
-from tests.helpers.worlds import furnished
+from tests.helpers.worlds import furnished, room, with_box, with_facts
 
 
 @pytest.fixture(scope="module")
@@ -52,6 +52,12 @@ def test_what_a_house_cannot_satisfy_is_told_with_what_there_is(task, goal, word
     with pytest.raises(EpisodeError) as refused:
         task.truth.instances(goal)
     assert words in str(refused.value)
+
+
+def test_a_wrong_text_about_an_object_names_the_house():
+    house = with_box(room(5, 4), "chair_00", centre_m=(1.0, 0.0, 0.4), half_m=(0.2, 0.2, 0.4))
+    with pytest.raises(HouseError, match="House 'room': the text of instance 'chair_00' must look like"):
+        Task(World(with_facts(house, chair_00="color: red"))).truth.instances("red chair")
 
 
 def test_only_the_object_that_was_asked_for_counts():

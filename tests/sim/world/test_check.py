@@ -6,8 +6,8 @@ import pytest
 
 from sim.core.interface import RobotModel, SuccessRule
 from sim.houses.house import House
-from sim.world.check import check_house
-from tests.helpers.worlds import room, with_box
+from sim.world.check import check_house, check_own_house
+from tests.helpers.worlds import room, with_box, with_facts
 
 
 def table(house: House, *, x_m: float = 0.0, z_m: float = 0.4, name: str = "table_00") -> House:
@@ -43,6 +43,22 @@ DIVIDED = with_box(room(6, 4), "bed_00", centre_m=(-0.8, 0.0, 0.5), half_m=(0.3,
 )
 def test_objects_may_touch_and_not_overlap(house: House, faults: list[str]) -> None:
     assert check_house(house.spec) == faults
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("colour: brown", None),
+        ("color: brown", "must look like 'name: dining chair; colour: red; material: wood', got 'color: brown'"),
+        ("colour: braun", "has colour 'braun'. Available: white, grey"),
+    ],
+)
+def test_a_users_house_with_a_wrong_text_about_an_object_has_a_fault(text: str, fault: str | None) -> None:
+    faults, _ = check_own_house(with_facts(table(room(5, 4)), table_00=text))
+    if fault is None:
+        assert faults == []
+    else:
+        assert f"the text of instance 'table_00' {fault}" in faults[0]
 
 
 @pytest.mark.parametrize(

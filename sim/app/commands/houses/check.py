@@ -102,7 +102,8 @@ def main(args: Args) -> int:
     for checked in _checked(args):
         results.append(checked)
         tries = f", {checked.tries} tries" if fresh else ""
-        print(f"{checked.name}: {len(checked.faults)} faults{tries}, {checked.seconds:.2f} s", flush=True)
+        faults = display.counted(len(checked.faults), "fault")
+        print(f"{checked.name}: {faults}{tries}, {checked.seconds:.2f} s", flush=True)
         for note in checked.notes:
             print(f"    note: {note}")
         for reason in checked.rejects:

@@ -35,6 +35,13 @@ def test_houses_without_episodes_are_checked_whatever_their_endings(
     assert "second: 0 faults" in printed
 
 
+def test_a_wrong_colour_of_an_object_is_one_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (EXAMPLE.parent / "my_flat.xml").read_text().replace("colour: blue", "color: blue")
+    (tmp_path / "flat.xml").write_text(text)
+    assert main(Args(house=tmp_path / "flat.xml", views=0)) == 1
+    assert "flat: 1 fault, " in capsys.readouterr().out
+
+
 @pytest.mark.costly
 def test_advice_on_a_generated_house_is_a_note_and_no_fault(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(Args(first_seed=5003, seeds=1, kind="flat", area_m2=64.0, views=0)) == 0
