@@ -261,7 +261,7 @@ def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]
     for house, (of_one, relaxed) in zip(turns, drawn, strict=True):
         episodes |= dict(of_one)
         note = f", {relaxed} of them do not meet the rule of the recipe" if relaxed else ""
-        print(f"{house}: {len(of_one)} episodes{note}", flush=True)
+        print(f"{house}: {display.counted(len(of_one), 'episode')}{note}", flush=True)
     return [episodes[i] for i in range(len(order))]
 
 

@@ -17,6 +17,7 @@ import tyro
 
 from sim.app import cli
 from sim.app.analysis.comparison import read_run
+from sim.app.analysis.display import counted
 from sim.app.evaluation.results import segmentation_of
 from sim.app.submissions.checks import PLACES, isolation_text, truth_of
 from sim.app.submissions.contents import SUFFIX, write_submission
@@ -54,7 +55,7 @@ def main(args: Args) -> int:
     size = write_submission(out, submission)
     inputs, count = submission.manifest.inputs, len(submission.episodes)
     isolated = PLACES[isolation_text(inputs)]
-    print(f"{out}: {count} episodes of {submission.manifest.split.name}, {size / 1000:.0f} KB.")
+    print(f"{out}: {counted(count, 'episode')} of {submission.manifest.split.name}, {size / 1000:.0f} KB.")
     segmentation = segmentation_of(submission.config_tree(where=str(out)))
     print(
         f"Declared: agent '{inputs.agent}' {isolated}; segmentation {segmentation}; ground truth {truth_of(inputs)}; "

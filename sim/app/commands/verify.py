@@ -28,6 +28,7 @@ from typing import Annotated
 import tyro
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.analysis.metrics import SPL, SUCCESS, mean_cell
 from sim.app.composition.agents import SPECS
 from sim.app.submissions.audit import FRAMES, AuditOptions, Checked, check, counts, verdicts
@@ -121,7 +122,7 @@ def _head(checked: Checked) -> Iterator[str]:
 
 
 def _line(verdict: Verdict) -> str:
-    frames = ", frames too" if verdict.framed else ""
+    frames = " (with frames)" if verdict.framed else ""
     return f"{verdict.episode_id}: {verdict.judgement}{frames}{': ' + verdict.text if verdict.text else ''}."
 
 
@@ -133,20 +134,22 @@ def _summary(checked: Checked, options: AuditOptions, outcome: list[Verdict], se
         f"{count[name]} {name}" for name in ("equal", "within tolerance", "different", "error") if count[name]
     )
     yield (
-        f"{len(outcome)} episodes: {by_judgement}. Frames of {framed} were rendered (--draw-seed {options.draw_seed}). "
-        f"{_speed(len(outcome) - count['error'], seconds)}"
+        f"{counted(len(outcome), 'episode')}: {by_judgement}. Frames of {framed} were rendered (--draw-seed "
+        f"{options.draw_seed}). {_speed(len(outcome) - count['error'], seconds)}"
     )
     results = results_of(checked.submission)
     yield f"Success {mean_cell(SUCCESS, results).text()} %, SPL {mean_cell(SPL, results).text()} (95 % intervals)."
     if count["different"]:
         yield (
-            f"NOT VERIFIED: {count['different']} episodes are different. A tolerance repairs neither success nor "
-            "collisions; ask the authors to run these episodes again."
+            f"NOT VERIFIED: {counted(count['different'], 'episode')} differed in the replay. A tolerance repairs "
+            "neither success nor collisions; ask the authors to run the different episodes again."
         )
     elif count["error"] == len(outcome):
         yield "Nothing was verified: all episodes ended with an error."
     else:
-        rest = f" {count['error']} episodes ended with an error and have no actions." if count["error"] else ""
+        rest = (
+            f" {counted(count['error'], 'episode')} ended with an error and left no actions." if count["error"] else ""
+        )
         yield f"Verified: these actions lead to these results.{rest}"
     yield _known_paths(checked, outcome)
     yield (

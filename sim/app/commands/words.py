@@ -26,6 +26,7 @@ from typing import Literal
 import numpy as np
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError, EpisodeError
 from sim.core.goals import GoalSpec
@@ -91,7 +92,7 @@ def main(args: Args) -> int:
     made, by_house = ordered_map(functools.partial(_draw, args), work, workers=args.workers), []
     for house, drawn in zip(split.houses, made, strict=True):
         by_house.append(drawn)
-        print(f"{house}: {len(drawn)} episodes", flush=True)
+        print(f"{house}: {counted(len(drawn), 'episode')}", flush=True)
     rounds = [drawn[turn] for turn in range(per_house) for drawn in by_house if turn < len(drawn)]
     name = args.out.resolve().name
     episodes = [replace(episode, episode_id=f"{name}_{i:04d}") for i, episode in enumerate(rounds[: args.episodes])]
@@ -101,7 +102,7 @@ def main(args: Args) -> int:
     goals = {house: {} for house in split.houses}
     write_split(args.out, episodes, goals, version=split.version, houses_of=home.name)
     different = {goal for episode in episodes for goal in episode.specs}
-    print(f"{len(episodes)} episodes, {len(different)} different goals, in {args.out}")
+    print(f"{counted(len(episodes), 'episode')}, {counted(len(different), 'different goal')}, in {args.out}")
     return 0
 
 

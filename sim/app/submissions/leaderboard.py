@@ -15,6 +15,7 @@ from pathlib import Path
 
 import msgspec
 
+from sim.app.analysis.display import counted
 from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, episodes_of, mean_cell
 from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.submissions.checks import isolation_text, truth_of
@@ -61,7 +62,7 @@ class Row:
     def refusal(self) -> str:
         """The reason why the table has no such row; "": the submission is accepted."""
         if self.report.different:
-            return f"{self.report.different} episodes are different in the replay"
+            return f"{counted(self.report.different, 'episode')} differed in the replay"
         return refusal_before_replay(self.submission, self.report.is_first, self.report.nonstandard, self.shipped)
 
 

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.commands.houses.area import Area
 from sim.app.evaluation.parallel import Shard, ordered_map
 from sim.core.errors import ConfigError, HouseError
@@ -88,7 +89,7 @@ def main(args: Args) -> int:
         print(f"{exported.name}: {exported.summary}", flush=True)
     times = [exported.seconds for exported in results if exported.seconds]
     median = f", median {statistics.median(times):.1f} s each" if times else ""
-    print(f"{len(results)} houses, {len(times)} exported now{median}")
+    print(f"{counted(len(results), 'house')}, {len(times)} exported now{median}")
     return int(any(exported.failed for exported in results))
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.viewers.palette import with_legend
 from sim.app.viewers.text import write
 from sim.core.files import write_picture
@@ -57,7 +58,7 @@ def main(args: Args) -> int:
         views += [in_shard[i] for i in rng.permutation(len(in_shard))[:share]]
     rows = [draw(view) for view in views]
     write_picture(args.out, tiled(rows, columns=2 if rows and rows[0].shape[1] <= 3 * WIDTH_PX else 1))
-    print(f"{len(views)} views in {args.out}")
+    print(f"{counted(len(views), 'view')} in {args.out}")
     return 0
 
 

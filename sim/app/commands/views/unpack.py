@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.core.files import inside, write_atomically
 from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard
 from sim.training.views.coco import CATEGORIES
@@ -54,7 +55,7 @@ def main(args: Args) -> int:
         coco = {"images": images, "annotations": objects, "categories": CATEGORIES}
         write_atomically(args.out / "coco.json", json.dumps(coco))
         print(f"{len(objects)} objects in {args.out / 'coco.json'}")
-    print(f"{count} views in {args.out}")
+    print(f"{counted(count, 'view')} in {args.out}")
     return 0
 
 

@@ -54,7 +54,7 @@ def test_the_exit_status_says_whether_the_results_hold(
     content = content_of(folder / "oracle.json.gz")
     content["episodes"][1]["result"].update(success=0.0, spl=0.0, failure="misc")
     assert verify.main(verify.Args(file=written(tmp_path / "forged.json.gz", content), **options)) == 1
-    assert "NOT VERIFIED: 1 episodes are different" in capsys.readouterr().out
+    assert "NOT VERIFIED: 1 episode differed in the replay" in capsys.readouterr().out
 
 
 def test_an_agent_that_gets_no_segmentation_declares_none(
@@ -117,7 +117,7 @@ def test_the_leaderboard_has_the_rows_that_hold(
     assert leaderboard.main(args) == 1
     printed = capsys.readouterr().out
     for part in (
-        "forged.json.gz: 1 episodes are different", "chosen.json.gz: its episodes were chosen by the authors",
+        "forged.json.gz: 1 episode differed in the replay", "chosen.json.gz: its episodes were chosen by the authors",
         "broken.json.gz: Submission ", "few.json.gz: it has 2 episodes; a row needs 3",
     ):  # fmt: skip
         assert f"Left out: {part}" in printed
@@ -154,7 +154,7 @@ def test_a_report_that_comes_with_a_forged_submission_is_not_read(
     claim = report | {"sha256": sha256_of(forged, what="Submission")}
     (tmp_path / "reports" / "b.json").write_text(json.dumps(claim))
     assert leaderboard.main(args) == 1
-    assert "b.json.gz: 1 episodes are different" in capsys.readouterr().out
+    assert "b.json.gz: 1 episode differed in the replay" in capsys.readouterr().out
     assert len([line for line in (tmp_path / "table.md").read_text().splitlines() if line.startswith("| ")]) == 3
     assert "| equal | 0 + 0 + 0 |" in (tmp_path / "table.md").read_text(), "the forged copy does not count"
 
