@@ -131,8 +131,8 @@ def find_explorer(name: str) -> ExplorerConfig:
         return agents.EXPLORERS[name]
     if not all(name.partition(":")[1:]):
         raise ConfigError(
-            f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as "
-            "package.module:NAME."
+            f"Unknown --explorer '{name}'.{did_you_mean(name, agents.EXPLORERS)} Available: "
+            f"{', '.join(agents.EXPLORERS)}, or your own as package.module:NAME."
         )
     declared = import_attribute(name)
     if not dataclasses.is_dataclass(declared) or isinstance(declared, type) or not isinstance(declared, ExplorerConfig):

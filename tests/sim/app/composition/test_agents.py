@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sim.app.commands.run import entry
-from sim.app.composition.agents import SPECS, build_agent, find_agent
+from sim.app.composition.agents import SPECS, build_agent, find_agent, find_explorer
 from sim.core.errors import ConfigError
 from sim.core.interface import POSE_SENSORS, AgentSpec, CameraModel
 from sim.env.objectnav import ObjectNavEnv
@@ -105,6 +105,11 @@ def test_an_agents_own_option_is_set_from_the_command_line(house: Path, tmp_path
 def test_an_agent_that_does_not_exist_is_refused(name: str, message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         find_agent(name)
+
+
+def test_an_explorer_with_a_similar_name_is_named() -> None:
+    with pytest.raises(ConfigError, match="Did you mean 'informed-tour'"):
+        find_explorer("informed-tuor")
 
 
 @pytest.mark.costly
