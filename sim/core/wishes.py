@@ -76,6 +76,7 @@ def _one_of(words: Iterable[str]) -> str:
 
 _BEFORE_PLACE = re.compile(f" (?:that is |which is |standing |lying |hanging )?{_one_of(_PLACES)} ")
 _IN_ROOM = re.compile(f" (?:in|of|inside|from) (?:the |a |an |my |our )?{_one_of(ROOMS)}$")
+_IN_UNKNOWN = re.compile(r"^(.+?) (?:in|inside) (?:the |a |an |my |our )?(.+)$")
 _OF_N = re.compile(rf"^(\w+) (?:one )?of (?:the |all )?(?:({'|'.join(_NUMBERS)}|\d) )?(.+)$")
 
 
@@ -210,6 +211,9 @@ def _unknown(word: str, before: str = "") -> WishError:
             f"The word '{word}' before '{before}' is not known.{hint} Known are colours "
             f"({', '.join(get_args(ColourName))}), materials, 'round', 'largest' and 'smallest', and rooms."
         )
+    if (match := _IN_UNKNOWN.match(word)) and vocabulary().find(match[1]) is not None:
+        rooms = ", ".join(dict.fromkeys(kinds[0].replace("_", " ") for kinds in ROOMS.values()))
+        return WishError(f"No room is known as '{match[2]}'.{did_you_mean(match[2], ROOMS)} Rooms: {rooms}.")
     objects = [known for known, (relation, _) in vocabulary().words.items() if relation != "other"]
     return WishError(f"No object is known as '{word}'.{did_you_mean(word, objects)}")
 

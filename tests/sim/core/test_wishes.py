@@ -79,6 +79,9 @@ def test_a_room_may_stand_before_the_name_unless_both_are_a_word():
     [
         ("the grene chair", "'grene' before 'chair' is not known. Did you mean 'green'"),
         ("spaceship", "No object is known as 'spaceship'"), ("flower bed", "No object is known as 'flower bed'"),
+        ("the red chair in the batroom", "No room is known as 'batroom'. Did you mean 'bathroom'? Rooms: "),
+        ("chair inside my bed room by the bed", "No room is known as 'bed room'. Did you mean 'bedroom'"),
+        ("spaceship in the batroom", "No object is known as 'spaceship in the batroom'"),
         ("chair next to", "chair next to"), ("", "1 to 300 characters"), ("x" * 301, "got 301"),
         ("chair next to the red table", "'the red table'"),
     ],
