@@ -50,17 +50,6 @@ class Run:
             raise ConfigError(f"'{self.path / 'config.json'}' has no field '{name}', which this command needs.")
         return value
 
-    def existing(self, recorded: str) -> str:
-        """Returns a recorded path; a relative one that does not exist here is that of the folder where the run began.
-
-        This folder is known while the folder of the run has the name that `--out` gave it there.
-        """
-        file, out, folder = Path(recorded), Path(self.config.get("out") or "/"), self.path.resolve()
-        if file.is_absolute() or file.exists() or out.is_absolute() or folder.parts[-len(out.parts) :] != out.parts:
-            return recorded
-        there = Path(*folder.parts[: -len(out.parts)]) / file
-        return str(there) if there.exists() else recorded
-
 
 def read_run(path: Path) -> Run:
     """Returns the run in a folder.

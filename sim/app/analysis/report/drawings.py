@@ -15,7 +15,7 @@ from sim.app.analysis.report.plans import PX_M, Plan, Sheet, draw_area, draw_pla
 from sim.core.configuration import with_fields
 from sim.core.errors import EpisodeError, HouseError
 from sim.core.interface import CameraModel, ConfigError, RobotModel, SuccessRule
-from sim.episodes.splits import Split, load_split, one_house, shipped_splits
+from sim.episodes.splits import Split, load_split, one_house
 from sim.houses.house import House, read_rooms
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
@@ -39,12 +39,12 @@ def split_of(run: Run) -> Split:
         HouseError: the one house does not exist.
     """
     config = run.config
-    if house := config.get("house"):
-        labels, root = (path and run.existing(path) for path in (config.get("labels"), config.get("root")))
-        split = one_house(run.existing(house), labels=labels, root=root)
-    else:
-        name = run.recorded("split")
-        split = load_split(name if name in shipped_splits() else run.existing(name))
+    house = config.get("house")
+    split = (
+        one_house(house, labels=config.get("labels"), root=config.get("root"))
+        if house
+        else load_split(run.recorded("split"))
+    )
     if split.sha256 != run.recorded("split_identity")["sha256"]:
         raise ConfigError(f"'{run.path}' was run in another version of '{split.name}' than the present one.")
     return split
@@ -194,7 +194,7 @@ def robot_of(run: Run) -> RobotConfig:
     file = run.config.get("robot")
     recorded = run.config.get("config", {}).get("robot", {})
     root = (recorded.get("file") or {}).get("root")
-    robot = load_robot(run.existing(file), root=Path(root) if root else None)[0] if file else RobotConfig()
+    robot = load_robot(file, root=Path(root) if root else None)[0] if file else RobotConfig()
     return with_fields(robot, {name: value for name, value in recorded.items() if name != "file"})
 
 

@@ -267,18 +267,6 @@ def test_a_house_that_has_changed_is_not_drawn_but_the_paths_are(recorded_run: P
     assert len(_data(page)["episodes"][0]["paths"][0]["x"]) > 5
 
 
-def test_a_run_with_relative_paths_is_drawn_from_another_folder(
-    recorded_run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    shutil.copy(recorded_run / "lounge.xml", tmp_path)
-    shutil.copytree(recorded_run / "found", tmp_path / "runs/found")
-    config = json.loads((tmp_path / "runs/found/config.json").read_text())
-    (tmp_path / "runs/found/config.json").write_text(json.dumps(config | {"house": "lounge.xml", "out": "runs/found"}))
-    (tmp_path / "elsewhere").mkdir()
-    monkeypatch.chdir(tmp_path / "elsewhere")
-    assert len(_data(_page(Path("../runs/found")))["plans"]) == 1
-
-
 def test_an_unfinished_run_and_broken_episodes_are_reported(pair: tuple[Path, Path]) -> None:
     _, folder = pair
     _write_lines(folder, _lines(folder)[:3])
