@@ -16,6 +16,7 @@ from sim.app.evaluation.summary import few_episodes
 from sim.core import invocation
 from sim.core.errors import debug
 from sim.core.reading import printable
+from sim.episodes.replicates import episode_of
 from sim.task.result import METRICS, EpisodeResult, goals_found
 
 MAX_EPISODES_SHOWN = 20
@@ -49,7 +50,7 @@ def print_where_to_look(
         console: prints.
         out: folder of the run.
         video: whether its episodes were filmed.
-        failed: ID of a failed episode of a split; None: none failed.
+        failed: ID of a failed episode of a split, or of a replicate of it; None: none failed.
         sharded: whether the run is a part of a larger one.
     """
     say = functools.partial(console.print, highlight=False, soft_wrap=True)
@@ -58,7 +59,7 @@ def print_where_to_look(
         say(f"Videos are in {out}/videos.")
     elif failed is not None:
         whole = ", without --shard" if sharded else ""
-        say(f"Film a failure: the same command with --only {failed} --video --out ANOTHER_FOLDER{whole}.")
+        say(f"Film a failure: the same command with --only {episode_of(failed)} --video --out ANOTHER_FOLDER{whole}.")
     say(f"A page about this run: {invocation.command('report', out)}")
     say(f"Watch an agent in the browser, or drive yourself: {invocation.command('web')}")
 

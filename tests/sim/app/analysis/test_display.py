@@ -81,5 +81,5 @@ def test_the_printed_commands_start_as_they_are_printed(
     report, web = re.findall(r": (\S*stubborn .*)", capsys.readouterr().out)
     assert shlex.split(report) == [str(script), "report", str(tmp_path / "a run")]
     assert shlex.split(web) == [str(script), "web"]
-    print_where_to_look(PlainConsole(width=120), tmp_path, video=False, failed="val_0001", sharded=True)
+    print_where_to_look(PlainConsole(width=120), tmp_path, video=False, failed="val_0001~2", sharded=True)
     assert "with --only val_0001 --video --out ANOTHER_FOLDER, without --shard." in capsys.readouterr().out
