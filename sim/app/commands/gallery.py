@@ -33,6 +33,7 @@ from sim.core.files import write_picture
 from sim.core.interface import ConfigError
 from sim.core.paths import assets_dir
 from sim.core.pictures import tiled
+from sim.core.vocabulary import in_words
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.catalogue import Catalogue, Style
 from sim.homes.housegen.furniture.item import Geom, Item, Look, Pool
@@ -90,7 +91,7 @@ def main(args: Args) -> int:
             if of_pool:
                 copies, name = (2, args.pool) if args.furniture is None else (1, "imported")
                 sheet = draw_sheet(of_pool, np.random.default_rng(args.seed), copies, catalogue)
-                title = f"{category.replace('_', ' ')}: {display.counted(len(of_pool), 'style')}, {name}"
+                title = f"{in_words(category)}: {display.counted(len(of_pool), 'style')}, {name}"
                 _save(args.out / f"sheet_{name}_{category}.png", titled(sheet, title))
     return 0
 

@@ -221,9 +221,12 @@ function fill(parent, children) {
 
 function options(select, values, wanted, empty = "its own") {
   const before = wanted ?? select.value;
-  fill(select, values.map((value) => new Option(shortened(value).replaceAll("_", " ") || empty, value)));
+  fill(select, values.map((value) => new Option(plain(shortened(value)) || empty, value)));
   if (values.includes(before)) select.value = before;
 }
+
+// A category or a name in words.
+const plain = (name) => (name === "tv_monitor" ? "television" : name.replaceAll("_", " "));
 
 // Of a path, only the last name is shown.
 const shortened = (value) => (value.includes("/") ? value.replace(/\/+$/, "").split("/").at(-1) : value);
@@ -260,7 +263,7 @@ async function showHouse() {
   const asked = {split: $("split").value, house: $("house").value};
   $("place").value = "";
   above = null;
-  $("above-words").textContent = `Drawing ${asked.house.replaceAll("_", " ")} ...`;
+  $("above-words").textContent = `Drawing ${plain(asked.house)} ...`;
   const answer = await fetch(`api/house?${new URLSearchParams(asked)}`);
   if ($("split").value !== asked.split || $("house").value !== asked.house) return;  // another one was chosen since
   $("above").classList.toggle("missing", !answer.ok);
@@ -287,7 +290,7 @@ function drawHouse() {
   canvas.width = above.picture.width;
   canvas.height = above.picture.height;
   pen.drawImage(above.picture, 0, 0);
-  $("above-words").textContent = `${$("house").value.replaceAll("_", " ")} from above. ` + (place ? "Start: the arrow." : "Press to choose a start, drag to turn it.");
+  $("above-words").textContent = `${plain($("house").value)} from above. ` + (place ? "Start: the arrow." : "Press to choose a start, drag to turn it.");
   if (!place) return;
   const x = (place[0] - above.middle_m[0]) / above.m_per_px + canvas.width / 2;
   const y = canvas.height / 2 - (place[1] - above.middle_m[1]) / above.m_per_px;
@@ -599,7 +602,7 @@ function showEpisodes() {
 }
 
 function episodeRow(line) {
-  const outcome = line.success === 1 ? "found" : line.end_reason === "error" ? "error" : (line.failure ?? line.end_reason ?? "").replaceAll("_", " ");
+  const outcome = line.success === 1 ? "found" : line.end_reason === "error" ? "error" : plain(line.failure ?? line.end_reason ?? "");
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   const add = (words, action) => {
@@ -615,7 +618,7 @@ function episodeRow(line) {
   add("Watch", () => again("agent"));
   add("Drive", () => again("person"));
   if (line.video) add("Video", () => showVideo(line, outcome));
-  return row([[line.episode_id, ""], [line.house ?? "", ""], [(line.goal ?? "").replaceAll("_", " "), ""], [outcome, line.success ? "good" : "bad"], [line.num_steps ?? "", "number"], [Number(line.spl ?? 0).toFixed(2), "number"], [buttons, ""]]);
+  return row([[line.episode_id, ""], [line.house ?? "", ""], [plain(line.goal ?? ""), ""], [outcome, line.success ? "good" : "bad"], [line.num_steps ?? "", "number"], [Number(line.spl ?? 0).toFixed(2), "number"], [buttons, ""]]);
 }
 
 function showVideo(line, outcome) {

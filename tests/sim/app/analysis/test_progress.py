@@ -59,12 +59,12 @@ def test_a_pipe_gets_a_line_when_an_episode_begins_while_it_runs_and_when_it_end
 
     assert list(progress.over(lines())) == [RESULT]
     first, *running, last = stream.getvalue().splitlines()
-    assert first == "e0 begins: looking for tv monitor in house val_00"
+    assert first == "e0 begins: looking for television in house val_00"
     assert running
     pace = r"\d+\.\d steps/s, at most \d+ (s|min) left"
     assert all(re.fullmatch(rf"\[0/1\] running: e0, step \d+ of 500(; {pace})?", line) for line in running)
     assert re.search(pace, running[-1])
-    assert last == "[1/1] e0: tv monitor found after 3 steps, 1 s"
+    assert last == "[1/1] e0: television found after 3 steps, 1 s"
 
 
 def test_silences_grow_so_that_the_log_of_a_long_episode_stays_short() -> None:

@@ -18,7 +18,7 @@
   }
   const svg = (name, attributes, ...children) => element("http://www.w3.org/2000/svg", name, attributes, children);
   const html = (name, attributes, ...children) => element("http://www.w3.org/1999/xhtml", name, attributes, children);
-  const plain = (name) => name.replaceAll("_", " ");
+  const plain = (name) => (name === "tv_monitor" ? "television" : name.replaceAll("_", " "));
 
   // ---- the table
   function value(row, column) {
