@@ -16,7 +16,7 @@ import cv2
 import msgspec
 
 from sim.app.composition.agents import EXPLORERS, SPECS, find_agent, find_explorer, takes_explorer
-from sim.app.composition.driven import HUMAN_NAME
+from sim.app.composition.driven import HUMAN_NAME, is_driven
 from sim.app.composition.segmenters import KINDS, NetworkConfig, find_segmentation
 from sim.app.evaluation.results import RunRecord
 from sim.app.options import RunOptions
@@ -151,13 +151,12 @@ class Choices:
         Raises:
             ConfigError: the server was started without a part of the run, or a field of the record is missing.
         """
-        by_person = str(record.get("agent")).partition("+")[0] == HUMAN_NAME
         file = record.get("house")
         asked = {
             "split": str(Path(str(file)).absolute()) if file else _split_name(str(record.get("split"))),
             "house": result.house,
             "goal": result.goal,
-            "agent": "stubborn" if by_person else record.get("agent"),
+            "agent": "stubborn" if is_driven(record) else record.get("agent"),
             "semantics": record.get("semantics"),
             "explorer": record.get("explorer") or "",
             "episode": result.episode_id,
@@ -169,6 +168,7 @@ class Choices:
         meaning = meanings(RunOptions).items()
         plain = {name for name, option in meaning if option.plain and (file or not option.of_episodes)}
         options = with_fields(request.options, {name: record[name] for name in plain if name in record})
+        options = replace(options, episodes=options.episodes // options.replicates)  # config.json counts each replicate
         options = replace(options, config=_settings(record, self._options.config), config_file=None)
         return replace(request, record=record, options=options)
 

@@ -12,7 +12,7 @@ from typing import Protocol
 
 from sim.app.analysis.display import counted
 from sim.app.cli import USAGE_ERRORS
-from sim.app.composition.driven import HUMAN, HUMAN_NAME
+from sim.app.composition.driven import HUMAN, HUMAN_NAME, is_driven
 from sim.app.composition.environments import drawn_episodes
 from sim.app.composition.record import record_of
 from sim.app.composition.runner import Parts, build_parts
@@ -309,12 +309,13 @@ class _Watcher:
 def choose_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int, setup: Setup) -> Episode:
     """Returns the episode of a request; without an id, the episodes of its house and goal in turn.
 
-    To draw an episode of a finished run in a house file again, all episodes of that run are drawn.
+    To draw an episode of a finished run in a house file again, all episodes of that run are drawn; one that a person
+    drove was drawn alone.
 
     Raises:
         EpisodeError: there is no such episode, or none can be drawn in a house file.
     """
-    if request.options.house is not None and request.record is not None:
+    if request.options.house is not None and request.record is not None and not is_driven(request.record):
         drawn = with_replicates(drawn_episodes(env, setup), setup.options.replicates)
         again = {episode.episode_id: episode for episode in drawn}
         if request.episode_id not in again:

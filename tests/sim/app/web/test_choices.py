@@ -209,6 +209,15 @@ def test_an_episode_driven_by_hand_is_recorded_and_one_of_the_agent_is_not(
     assert {file.name for file in run.iterdir()} >= {"summary.json", "pictures"}
     play(own.request(start), tmp_path)
     assert len(list(tmp_path.iterdir())) == 1
+    again = play(own.again(read_record(run / "config.json"), line, "agent"), tmp_path).frames[0].facts
+    assert again["shortest_m"] == line.shortest_path
+
+
+def test_replicates_of_one_start_in_a_house_can_be_watched_again(own: Choices, house: Path, tmp_path: Path) -> None:
+    record: RunRecord = {"agent": "random", "semantics": "gt", "house": str(house), "episodes": 2, "replicates": 2}
+    line = a_result(episode_id="sofa_room_0000~1", house="sofa_room", goal="sofa")
+    request = own.again(cast(RunRecord, {**record, "start_deg": "-1 1 0"}), line, "agent")
+    assert play(request, tmp_path).states[-1]["phase"] == "ended"
 
 
 def test_hints_lead_to_the_goal_also_after_a_detour(own: Choices, house: Path, tmp_path: Path) -> None:
