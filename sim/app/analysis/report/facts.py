@@ -7,26 +7,22 @@ import json
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, cast
 
 from sim.app.analysis.comparison import Run
 from sim.app.analysis.report.drawings import Trajectories
 from sim.app.analysis.report.media import picture_of, video_of
+from sim.app.composition.agents import SPECS
 from sim.app.evaluation.parallel import Shard
 from sim.app.evaluation.results import RunRecord, segmentation_of
+from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
+from sim.core.option_types import meanings
 
-NO_DEFAULT = (
-    "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
-    "start_deg", "episodes", "shard", "seed_key",
-)  # fmt: skip
-"""Options of `stubborn run` that the command of a run names if they have a value."""
-DEFAULTS: Mapping[str, object] = {
-    "verification": "naive-bayes", "seed": 0, "profile": "fast", "noise": "none", "motion": "contacts", "workers": 1,
-    "replicates": 1,
-}  # fmt: skip
-"""Options of `stubborn run` that the command of a run names if their value differs from this one."""
-FILES = ("record", "video", "mcap", "rerun_save")
-"""Options that write files of each episode."""
+_NAMED = ("agent", "semantics", "split", "episodes")
+"""Options that the command of a run names although they have their default."""
+_LEFT_OUT = ("executor", "address", "out", "view", "rerun")
+"""Recorded options that the command of a run does not name: they are of the machine, or show a running episode."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +34,7 @@ class RunFacts:
     name: str
     facts: Sequence[tuple[str, object]]
     command: str
+    """"": `stubborn run` cannot repeat the run, which a person or nodes of ROS 2 drove."""
     notes: Sequence[str]
     hint: str
     """A sentence about what the run lacks, and how to get it; "" if it lacks nothing."""
@@ -65,7 +62,7 @@ def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> Ru
         label,
         run.path.resolve().name,
         shown,
-        command_of(config),
+        command_of(config) if _is_of_run(config) else "",
         list(_notes(run, trajectories, index)),
         _hint(run, trajectories, index),
     )
@@ -73,21 +70,26 @@ def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> Ru
 
 def command_of(config: RunRecord) -> str:
     """Returns the command of a run without `--out`."""
-    words, only = ["stubborn", "run"], config.get("only")
-    for key in (*NO_DEFAULT, *DEFAULTS):
-        value = config.get(key)
-        if value is None or value == DEFAULTS.get(key) or (key == "split" and config.get("house")):
+    words, options = ["stubborn", "run"], cast(Mapping[str, Any], config)
+    absent = {"split"} if options.get("house") else {"episodes"} if options.get("only") else set[str]()
+    for name, option in meanings(RunOptions).items():
+        value = options.get(name)
+        is_default = name not in _NAMED and value == getattr(RunOptions, name)
+        if is_default or value in (None, [], False) or not option.recorded or name in absent.union(_LEFT_OUT):
             continue
-        if key == "episodes" and only:
-            continue
-        if key == "episodes":  # config.json counts each replicate
-            value //= config.get("replicates") or 1
-        words += [f"--{key.replace('_', '-')}", str(value)]
-    if only:
-        words += ["--only", *map(str, only)]
-    if settings := config.get("settings"):
+        if name == "episodes":  # config.json counts each replicate
+            value //= options.get("replicates") or 1
+        values = [] if value is True else value if isinstance(value, list) else [value]
+        words += [f"--{name.replace('_', '-')}", *map(str, values)]
+    if settings := options.get("settings"):
         words += ["--config", *(f"{path}={_setting(value)}" for path, value in settings.items())]
-    return shlex.join([*words, *(f"--{name.replace('_', '-')}" for name in FILES if config.get(name))])
+    return shlex.join(words)
+
+
+def _is_of_run(config: RunRecord) -> bool:
+    """Returns whether `stubborn run` takes the agent of a run: a person or nodes of ROS 2 are none."""
+    agent = str(config.get("agent"))
+    return agent in SPECS or ":" in agent
 
 
 def _setting(value: object) -> str:
@@ -102,7 +104,8 @@ def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
             with contextlib.suppress(ConfigError):  # a shard of version 0.1 was numbered from 0
                 planned, out = len(Shard.parse(str(shard)).select(range(planned))), run.path.parent
         if count < planned:
-            yield f"Not finished: {count} of {planned} episodes have ended. The command with --out {out} runs the rest."
+            rest = f" The command with --out {out} runs the rest." if _is_of_run(run.config) else ""
+            yield f"Not finished: {count} of {planned} episodes have ended.{rest}"
     errors = sum(result.is_error for result in run.results.values())
     if errors:
         yield f"{errors} of {count} episodes ended with an error; they count as failures and are listed below."
@@ -119,7 +122,7 @@ def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
 def _hint(run: Run, trajectories: Trajectories, index: int) -> str:
     """Returns a sentence about what no episode of the run has, and how to get it; "" if there is nothing."""
     absent = [(name, option) for name, option, count, of in _missing(run, trajectories, index) if count == of > 0]
-    if not absent:
+    if not absent or not _is_of_run(run.config):
         return ""
     names, options = (
         " and no ".join(name for name, _ in absent),

@@ -19,7 +19,7 @@ from msgspec.structs import replace as changed
 
 from sim.app.analysis.comparison import Run, read_run
 from sim.app.analysis.report.drawings import ground_truth_of, path_on, split_of
-from sim.app.analysis.report.facts import command_of
+from sim.app.analysis.report.facts import command_of, facts_of
 from sim.app.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around
 from sim.app.commands import run
 from sim.app.commands.report import Args, main
@@ -34,6 +34,7 @@ from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file, wr
 from sim.world.world import World
 from tests.helpers import wording
 from tests.helpers.browser import ENTER, Browser, missing
+from tests.helpers.results import a_result
 from tests.helpers.worlds import room, two_storeys, with_box
 
 MINUS = "\N{MINUS SIGN}"
@@ -438,6 +439,13 @@ def test_the_command_of_a_run_makes_the_same_run(recorded_run: Path) -> None:
     words = command_of(read_run(recorded_run / "found").config)
     assert words.startswith("stubborn run --agent oracle --semantics rednet --house")
     assert "--split" not in words
+
+
+@pytest.mark.parametrize("agent", ["human", "human+agent", "ros", "random"])
+def test_a_command_is_shown_only_where_it_can_run_the_agent(agent: str, tmp_path: Path) -> None:
+    run = Run(tmp_path, {"agent": agent, "semantics": "gt", "episodes": 2}, {"e0": a_result(episode_id="e0")})
+    facts = facts_of(run, "", {"e0": [None]}, 0)
+    assert bool(facts.command) == bool(facts.hint) == ("The command" in facts.notes[0]) == (agent == "random")
 
 
 @pytest.mark.parametrize("scheme", [0, 1], ids=["light", "dark"])
