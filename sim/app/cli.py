@@ -228,6 +228,14 @@ def check(args: DataclassInstance) -> None:
         _check_value(f"--{field.name.replace('_', '-')}", getattr(args, field.name), hints[field.name])
 
 
+def require_unset(args: DataclassInstance, names: Iterable[str], why: str) -> None:
+    """Raises ConfigError if an option with one of these names is not its default; `why` follows its name."""
+    for field in dataclasses.fields(args):
+        value = getattr(args, field.name)
+        if field.name in names and value != field.default:
+            raise ConfigError(f"--{'no-' if value is False else ''}{field.name.replace('_', '-')} {why}")
+
+
 def _check_value(name: str, value: object, hint: object) -> None:
     """Raises ConfigError if a value is not in the range of its type."""
     if dataclasses.is_dataclass(value):

@@ -76,6 +76,8 @@ def main(args: Args) -> int:
     if not args.houses and args.house is None and not args.sheet:
         raise ConfigError("gallery needs --houses FILE ..., --house FILE or --sheet.")
     args.check_house()
+    if not args.sheet:
+        cli.require_unset(args, ("categories", "pool", "furniture", "seed"), "needs --sheet.")
     twice = [name for name, count in Counter(path.stem for path in args.houses).items() if count > 1]
     if twice:
         raise ConfigError(f"Two of --houses are called '{twice[0]}', so that their pictures would have one name.")

@@ -272,6 +272,8 @@ def _check(options: RunOptions) -> None:
     if options.root is not None and options.house is None and options.robot is None:
         raise ConfigError("--root needs --house or --robot: a file that may use this folder, too.")
     require_root(options.root)
+    if options.verifier is not None and options.verification == ACCEPT_ALL:
+        raise ConfigError(f"--verifier has no effect with --verification {ACCEPT_ALL}, which accepts every candidate.")
     if options.only and options.house is not None:
         raise ConfigError("--only names episodes of a split; with --house, episodes are sampled.")
     if options.retry_errors and options.out is None:

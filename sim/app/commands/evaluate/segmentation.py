@@ -108,6 +108,8 @@ def main(args: Args) -> int:
         return _evaluate_own(args, args.semantics)
     if args.config or args.calibration is not None:
         raise ConfigError("--config and --calibration need --semantics.")
+    if args.card is None:
+        cli.require_unset(args, ("curves",), "needs --card: the picture of the curves is written next to it.")
     file = weights_file(args.weights)
     if args.calibrate and not args.shipped and file.resolve() == SHIPPED_REDNET.resolve():
         raise ConfigError(
@@ -143,9 +145,8 @@ def _evaluate_own(args: Args, semantics: str) -> int:
         ConfigError: an option is for networks of this project only, or as `measure_own`.
     """
     allowed = {"views", "semantics", "config", "count", "threads", "card", "calibration"}
-    for option in fields(args):
-        if option.name not in allowed and getattr(args, option.name) != option.default:
-            raise ConfigError(f"--{option.name.replace('_', '-')} is for networks of this project, not --semantics.")
+    others = {option.name for option in fields(args)} - allowed
+    cli.require_unset(args, others, "is for networks of this project, not --semantics.")
     if args.calibration is not None and not is_address(semantics):
         raise ConfigError(f"--calibration is for a server, http://HOST:PORT, not for '{semantics}'.")
     if args.calibration is not None and any(text.startswith("detector.calibration=") for text in args.config):

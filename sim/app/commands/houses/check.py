@@ -99,6 +99,11 @@ def main(args: Args) -> int:
         raise ConfigError("--split and --house exclude each other.")
     args.check_house()
     fresh = args.split is None and args.house is None
+    if fresh:
+        cli.require_unset(args, ("furnished",), "needs --split or --house: new houses are checked by all rules.")
+    else:
+        of_new = ("pool", "seeds", "first_seed", "kind", "area_m2", "movable")
+        cli.require_unset(args, of_new, "is for new houses: leave out --split and --house.")
     for checked in _checked(args):
         results.append(checked)
         tries = f", {checked.tries} tries" if fresh else ""

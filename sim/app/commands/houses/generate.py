@@ -121,15 +121,20 @@ def main(args: Args) -> int:
     """Writes the houses; returns 1 if a requested seed gave no house."""
     if args.split is not None and (args.furniture is not None or args.transfer_test):
         raise ConfigError("A shipped split has no imported furniture: leave out --split, or --furniture.")
-    for option, is_set in (("--transfer-test", args.transfer_test), ("--only-imported", args.only_imported)):
-        if is_set and args.furniture is None:
-            raise ConfigError(f"{option} needs --furniture, a folder that `{command('import', 'furniture')}` made.")
+    if args.furniture is None:
+        made_by = f"needs --furniture, a folder that `{command('import', 'furniture')}` made."
+        cli.require_unset(args, ("transfer_test", "only_imported", "furniture_split"), made_by)
     if args.split is not None or args.transfer_test:
-        kept = {"out", "split", "houses", "workers", "furniture", "transfer_test", "furniture_split", "only_imported"}
-        for field in fields(args):
-            if field.name not in kept and getattr(args, field.name) != field.default:
-                of = f"--split {args.split}" if args.split else "--transfer-test"
-                raise ConfigError(f"--{field.name.replace('_', '-')} has no effect with {of}, whose recipes set it.")
+        set_here = {field.name for field in fields(args)} - {
+            "out",
+            "split",
+            "houses",
+            "workers",
+            "furniture",
+            "transfer_test",
+        }
+        of = f"--split {args.split}" if args.split else "--transfer-test"
+        cli.require_unset(args, set_here, f"has no effect with {of}, whose recipes set it.")
     began_s = time.perf_counter()
     if args.split in LISTED:
         made = list(_write_list(args, args.split))

@@ -61,10 +61,6 @@ class Args:
     """Without a split: floor area such as 90, or a range such as 80:120; sampled when not given."""
 
 
-OF_GENERATED = ("pool", "first_seed", "kind", "area_m2")
-"""Options without an effect on the houses of a split."""
-
-
 @dataclass(frozen=True)
 class Exported:
     """The result of one house."""
@@ -78,10 +74,10 @@ class Exported:
 
 def main(args: Args) -> int:
     """Writes the plans; returns 1 if a house gave no plan."""
-    without_effect = [name for name in OF_GENERATED if getattr(args, name) != getattr(Args, name)]
-    if args.split is not None and without_effect:
-        option = without_effect[0].replace("_", "-")
-        raise ConfigError(f"--{option} is for generated houses, not for those of --split: leave one of the two out.")
+    if args.split is not None:
+        cli.require_unset(
+            args, ("pool", "first_seed", "kind", "area_m2"), "is for generated houses: leave out --split."
+        )
     args.out.mkdir(parents=True, exist_ok=True)
     results = []
     for exported in _exported(args):

@@ -53,9 +53,9 @@ class Args:
     beacon: str | None = None
     """With --announced: the hash that the announcement promised, 40 hexadecimal digits."""
     houses: cli.Count = 20
-    """Number of houses; an announcement has its own."""
+    """Number of houses; not with --announced."""
     episodes: cli.Count = 400
-    """Number of episodes; an announcement has its own."""
+    """Number of episodes; not with --announced."""
     workers: cli.Count = 1
     """Number of processes."""
 
@@ -85,6 +85,7 @@ def _make_announced(args: Args, file: Path) -> int:
     """Makes the split of an announcement; returns the exit status."""
     if args.secret_file is not None or args.beacon is None:
         raise ConfigError("--announced needs --beacon HASH and no --secret-file: the secret is derived from both.")
+    cli.require_unset(args, ("from_secret", "houses", "episodes"), "has no effect with --announced, which states it.")
     announcement = read_announcement(file)
     if args.out.resolve().name != announcement.name:
         raise ConfigError(f"--out must be a folder named '{announcement.name}', as '{file}' announces.")

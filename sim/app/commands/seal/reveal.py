@@ -52,7 +52,11 @@ def main(args: Args) -> int:
     seal = read_seal(args.seal)
     if sum(given is not None for given in (args.split, args.secret_file, args.announced)) != 1:
         raise ConfigError("Give one of --split FOLDER, --secret-file FILE and --announced FILE.")
-    if args.announced is not None and args.repository is not None:
+    if args.split is not None:
+        cli.require_unset(args, ("out",), "needs --secret-file or --announced, from which the split is made.")
+    if args.announced is None:
+        cli.require_unset(args, ("repository",), "needs --announced.")
+    elif args.repository is not None:
         _require_order(args.announced, args.seal, seal, args.repository)
     if args.split is None:
         split = _made(args, seal)

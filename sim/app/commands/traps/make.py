@@ -73,6 +73,7 @@ def main(args: Args) -> int:
     if (args.family is None) == (args.split is None):
         raise ConfigError(f"Name either a family (--family {', '.join(FAMILIES)}) or a split (--split contact-val).")
     if args.split is not None:
+        cli.require_unset(args, ("difficulty", "seed", "count"), "needs --family: the traps of a split are fixed.")
         return write_family_traps(args, CONTACT_SPLITS[args.split])
     assert args.family is not None
     if args.family in HELD_OUT:

@@ -108,24 +108,33 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--against HEAD --parts walk", "--parts must be some of"),
         ("--against HEAD --rounds 0", "--rounds must be at least 1"),
     ],
-    "sim.app.commands.houses.check": [("--split nowhere", "Unknown split 'nowhere'"), ("--kind castle", "castle")],
+    "sim.app.commands.houses.check": [
+        ("--split nowhere", "Unknown split 'nowhere'"),
+        ("--kind castle", "castle"),
+        ("--split val --kind estate", "--kind is for new houses"),
+        ("--furnished", "--furnished needs --split or --house"),
+    ],
     "sim.app.commands.compare": [("nowhere nowhere", "is not a run")],
     "tools.maintenance.describe_houses": [("--root nowhere --out OUT", "nowhere")],
     "sim.app.commands.evaluate.segmentation": [
         ("--views nowhere --weights nowhere", "No weights at 'nowhere'"),
         ("--views nowhere --weights FILE", "cannot be read"),
+        ("--views nowhere --curves OUT", "--curves needs --card"),
     ],
     "sim.app.commands.gallery": [
         ("--out OUT", "needs --houses FILE ..., --house FILE or --sheet"),
         ("--out OUT --houses nowhere.xml", "no such file"),
         ("--out OUT --houses FILE", "is not text in utf-8"),
         ("--out OUT --sheet --categories spoons", "spoons"),
+        ("--out OUT --house FILE --categories chair", "--categories needs --sheet"),
         ("--out OUT --sheet --furniture nowhere", "has no models.json"),
     ],
     "sim.app.commands.houses.generate": [
         ("--out OUT --split nowhere", "No split 'nowhere'"),
         ("--out OUT --transfer-test", "needs --furniture"),
         ("--out OUT --only-imported", "needs --furniture"),
+        ("--out OUT --furniture-split transfer", "--furniture-split needs --furniture"),
+        ("--out OUT --furniture OUT --transfer-test --only-imported", "--only-imported has no effect with"),
         ("--out OUT --furniture nowhere", "has no models.json"),
     ],
     "sim.app.commands.views.generate": [
@@ -159,6 +168,10 @@ BAD: dict[str, list[tuple[str, str]]] = {
     ],
     "sim.app.commands.views.show": [("--views nowhere --out OUT", "No shards")],
     "tools.maintenance.split_report": [("--splits nowhere", "Unknown split")],
+    "sim.app.commands.seal.make": [
+        ("--out OUT --announced FILE --beacon x --houses 3", "--houses has no effect with --announced"),
+    ],
+    "sim.app.commands.run": [("--verification none --verifier FILE", "--verifier has no effect")],
     "sim.training.cloned.trainer": [("--demonstrations nowhere --out OUT", "No demonstration in 'nowhere'")],
     "sim.app.commands.train.segmentation": [
         ("--views nowhere --val-views nowhere --out OUT --size vast", "--size must be one of"),
@@ -183,6 +196,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--out OUT --split contact", "contact-val"),
         ("--out OUT", "Name either a family"),
         ("--out OUT --family jam --split contact-val", "Name either a family"),
+        ("--out OUT --split contact-val --count 3", "--count needs --family"),
     ],
     "sim.app.commands.traps.report": [
         ("--out OUT --split nowhere", "Unknown split"),
