@@ -167,22 +167,26 @@ def import_all(
     rules: dict[str, str] = {}
     failed = 0
     began_s = said_s = time.monotonic()
-    for work, key, made in _run(works, make, out, before, options, workers):
-        if isinstance(made, _Failed):
-            failed += 1
-            print(f"{work.name}: left out: {printable(made.message)}", file=sys.stderr)
-        else:
-            reports[work.name] = {**made.report, "key": key, "rules": dict(made.rules)}
-            rules.update(made.rules)
-        done = len(reports) + failed
-        share = max(work.share, done / total if total else 0.0)
-        if share < 1.0 and time.monotonic() - said_s > PROGRESS_S:
-            said_s = time.monotonic()
-            left_s = round((said_s - began_s) * (1.0 / max(share, 1e-6) - 1.0))
-            print(f"{counted(done, 'house')}, about {left_s // 60} min {left_s % 60} s left.", flush=True)
+    try:
+        for work, key, made in _run(works, make, out, before, options, workers):
+            if isinstance(made, _Failed):
+                failed += 1
+                print(f"{work.name}: left out: {printable(made.message)}", file=sys.stderr)
+            else:
+                reports[work.name] = {**made.report, "key": key, "rules": dict(made.rules)}
+                rules.update(made.rules)
+            done = len(reports) + failed
+            share = max(work.share, done / total if total else 0.0)
+            if share < 1.0 and time.monotonic() - said_s > PROGRESS_S:
+                said_s = time.monotonic()
+                left_s = round((said_s - began_s) * (1.0 / max(share, 1e-6) - 1.0))
+                print(f"{counted(done, 'house')}, about {left_s // 60} min {left_s % 60} s left.", flush=True)
+                _write(out, before, reports, rules)  # a killed import goes on from here
+    finally:  # also after Ctrl-C
+        if reports or failed:
+            _write(out, before, reports, rules)
     if not reports and not failed:
         raise ConfigError("There is no house to import.")
-    _write(out, before, reports, rules)
     _print_result(Console(highlight=False, soft_wrap=True), list(reports.values()), failed, out)
     for name in list(reports)[:pictures]:
         _draw(out, name)

@@ -335,6 +335,23 @@ def test_an_error_that_nobody_expected_is_named_and_the_other_homes_are_imported
     assert "2 houses with 2 rooms" in printed.out
 
 
+def test_an_import_that_was_stopped_goes_on_with_the_houses_that_are_left(tmp_path: Path) -> None:
+    tried = list[str]()
+
+    def stopped(source: Path) -> Made:
+        tried.append(source.stem)
+        if tried == ["a", "c"]:
+            raise KeyboardInterrupt
+        (tmp_path / f"{source.stem}.xml").touch()
+        return _made(source)
+
+    works = [Work(name, b"", Path(name)) for name in ("a", "c")]
+    with pytest.raises(KeyboardInterrupt):
+        import_all(works, stopped, tmp_path, total=2, options="", pictures=0, workers=1)
+    assert import_all(works, stopped, tmp_path, total=2, options="", pictures=0, workers=1) == 0
+    assert tried == ["a", "c", "c"]
+
+
 def test_the_time_left_is_said_while_homes_are_left(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
