@@ -18,6 +18,7 @@ from sim.app.composition.record import record_of
 from sim.app.composition.runner import Parts, build_parts
 from sim.app.composition.setup import Setup, resolve
 from sim.app.evaluation.config_fields import run_differences
+from sim.app.evaluation.own_code import text_of
 from sim.app.evaluation.results import RunRecord
 from sim.app.evaluation.rollout import give_next_goal, next_action, play_episode
 from sim.app.viewers.overlay import goal_marks
@@ -117,7 +118,7 @@ class Session:
                 if debug():
                     traceback.print_exc()
                 self._free()
-                reason = f"{type(error).__name__}: {error} (unexpected; --debug shows where)"
+                reason = f"{type(error).__name__}: {text_of(error)} (unexpected; --debug shows where)"
                 self._show_state(request, "failed", f"The episode failed: {reason}")
         self._free()
 

@@ -247,11 +247,13 @@ def test_hints_lead_to_the_goal_also_after_a_detour(own: Choices, house: Path, t
     assert len(display.frames) < 100
 
 
+@pytest.mark.parametrize("readable", [True, False])
 def test_code_of_the_users_that_raises_anything_leaves_the_session_alive(
-    own: Choices, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    readable: bool, own: Choices, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     class Strange(BaseException):
-        pass
+        def __str__(self) -> str:
+            return super().__str__() if readable else str(self.args[1])
 
     display = Display()
     session = Session(display, DrivenRuns(tmp_path))
@@ -266,7 +268,8 @@ def test_code_of_the_users_that_raises_anything_leaves_the_session_alive(
     session.controls.ask_for(own.request(START))
     session._run()
     assert [state["phase"] for state in display.states] == ["failed", "failed"]
-    message = "The episode failed: Strange: no reason \\ud800 (unexpected; --debug shows where)"
+    reason = "no reason \\ud800" if readable else "its message cannot be read (IndexError)"
+    message = f"The episode failed: Strange: {reason} (unexpected; --debug shows where)"
     assert display.states[0]["message"] == message
     assert capsys.readouterr().err == ""
 
