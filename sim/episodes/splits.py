@@ -137,6 +137,11 @@ def shipped_splits() -> tuple[str, ...]:
     return tuple(sorted(folder.name for folder in assets_dir().iterdir() if _index_of(folder).is_file()))
 
 
+def absolute_split(name: str) -> str:
+    """Returns the name of a shipped split, or the path of a folder that stays valid if the current folder changes."""
+    return name if name in shipped_splits() else str(Path(name).absolute())
+
+
 def load_split(name_or_path: str | Path) -> Split:
     """Returns a shipped split by name, or the split in a folder with the same layout.
 

@@ -29,7 +29,11 @@ from sim.task.trajectory import Recording, SplitName, StartPose
 
 
 def record_of(setup: Setup, split: Mapping[str, str]) -> RunRecord:
-    """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions."""
+    """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions.
+
+    Paths are absolute, so that the run can be read from any folder.
+    """
+    setup = setup.with_absolute_paths()
     recorded = [name for name, option in meanings(RunOptions).items() if option.recorded]
     options = {name: as_json(getattr(setup.options, name)) for name in recorded}
     derived = RunRecord(

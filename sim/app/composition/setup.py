@@ -31,12 +31,12 @@ from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraMo
 from sim.core.invocation import command
 from sim.core.reading import printable
 from sim.episodes.habitat import IndexFile
-from sim.episodes.splits import Split, read_index
+from sim.episodes.splits import Split, absolute_split, read_index
 from sim.houses.references import require_root
 from sim.renderer.mounted import CameraConfig
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
-from sim.robot.foreign import load_robot, robot_cameras
+from sim.robot.foreign import absolute_robot, load_robot, robot_cameras
 from sim.sensors.cameras import camera_sensors, cameras_by_name
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.scan import ScanConfig
@@ -134,10 +134,12 @@ class Setup:
 
     def with_absolute_paths(self) -> Setup:
         """Returns this setup with absolute paths, which stay valid if the current folder changes."""
-        robot = self.config.robot
+        robot, given = self.config.robot, self.options.robot
         if robot.file is not None:
             robot = replace(robot, file=with_absolute_paths(robot.file))
-        return replace(self, options=with_absolute_paths(self.options), config=replace(self.config, robot=robot))
+        options = with_absolute_paths(self.options)
+        options = replace(options, split=absolute_split(options.split), robot=given and absolute_robot(given))
+        return replace(self, options=options, config=replace(self.config, robot=robot))
 
     def require_planned(self, split: Split) -> None:
         """Raises ConfigError if a split is not the one from which the episodes were planned."""

@@ -17,6 +17,8 @@ class Absent(enum.Enum):
 
 
 ABSENT = Absent.ABSENT
+HOUSES = ("split", "house", "labels", "root")
+"""Options that name the houses."""
 Difference = tuple[str, object, object]
 """Dotted path of a field, its value in the first object and in the second; `ABSENT` in an object without it."""
 Record = Mapping[str, object]
@@ -38,8 +40,8 @@ def differing_fields(a: Mapping[str, object], b: Mapping[str, object]) -> list[D
 def run_differences(first: Record, second: Record, *, resumed: bool = False) -> list[Difference]:
     """Returns the fields of two `config.json` in which the runs differ, without options that change no result.
 
-    Files with equal checksums are equal: the folder of a file is another one after a checkout has moved, and on other
-    machines.
+    Files and houses with equal checksums are equal: the folder of a file is another one after a checkout has moved, and
+    on other machines.
 
     Args:
         first: content of the first file.
@@ -57,15 +59,17 @@ def run_differences(first: Record, second: Record, *, resumed: bool = False) -> 
 
 
 def _is_same_file(path: str, first: Record, second: Record) -> bool:
-    """Returns whether a field of two `config.json` names a file that has the same checksum in both."""
+    """Returns whether a field of two `config.json` names a file, or houses, with the same checksum in both."""
     field = path.removeprefix("config.")
     options = {name for name, option in OPTIONS.items() if option.file_field and field in (name, option.file_field)}
     sums = [(_sums(first).get(name), _sums(second).get(name)) for name in (field, *options)]
+    if path in HOUSES:
+        sums = [(_sums(first, "split_identity").get("sha256"), _sums(second, "split_identity").get("sha256"))]
     return any(a is not None and a == b for a, b in sums)
 
 
-def _sums(record: Record) -> Mapping[str, str]:
-    sums = record.get("files_sha256")
+def _sums(record: Record, name: str = "files_sha256") -> Mapping[str, str]:
+    sums = record.get(name)
     return sums if isinstance(sums, Mapping) else {}
 
 

@@ -31,7 +31,7 @@ from sim.core.option_types import meanings
 from sim.core.reading import convert
 from sim.core.wishes import parse_wish
 from sim.episodes.replicates import episode_of
-from sim.episodes.splits import HOUSE_SUFFIXES, Split, load_split, one_house, shipped_splits
+from sim.episodes.splits import HOUSE_SUFFIXES, Split, absolute_split, load_split, one_house, shipped_splits
 from sim.houses.labels import read_labels
 from sim.task.result import EpisodeResult
 
@@ -72,7 +72,7 @@ class Choices:
         self._agents = {**SPECS, **{name: find_agent(name) for name in offer.agents}}
         self._explorers = {**EXPLORERS, **{name: find_explorer(name) for name in offer.explorers}}
         self._semantics = {**KINDS, **{name: find_segmentation(name, None) for name in offer.semantics}}
-        self._splits: dict[str, Goals] = {_split_name(name): _goals_of_split(name) for name in offer.splits}
+        self._splits: dict[str, Goals] = {absolute_split(name): _goals_of_split(name) for name in offer.splits}
         self._houses = {str(file): file for file in offer.houses}
         self._splits |= {name: _goals_of_house(file, offer.options) for name, file in self._houses.items()}
         others = [name for name in shipped_splits() if name not in (*NOT_OFFERED, *self._splits)]
@@ -153,7 +153,7 @@ class Choices:
         """
         file = record.get("house")
         asked = {
-            "split": str(Path(str(file)).absolute()) if file else _split_name(str(record.get("split"))),
+            "split": str(Path(str(file)).absolute()) if file else absolute_split(str(record.get("split"))),
             "house": result.house,
             "goal": result.goal,
             "agent": "stubborn" if is_driven(record) else record.get("agent"),
@@ -262,11 +262,6 @@ class _Start(msgspec.Struct):
     driver: Literal["agent", "person"] = "agent"
     start: tuple[Coordinate, Coordinate, Coordinate] | None = None
     """Metres, metres and degrees; None: that of an episode."""
-
-
-def _split_name(name: str) -> str:
-    """Returns the name of a shipped split, or the absolute path of a folder."""
-    return name if name in shipped_splits() else str(Path(name).absolute())
 
 
 def _goals_of_split(name: str) -> Goals:

@@ -11,15 +11,19 @@ from typing import Any, cast
 import pytest
 
 from sim.app import cli
+from sim.app.analysis.comparison import Run
+from sim.app.analysis.report.drawings import split_of
 from sim.app.analysis.report.facts import command_of
 from sim.app.commands.run import entry
 from sim.app.composition.record import error_result, record_of
 from sim.app.composition.setup import resolve
+from sim.app.evaluation.config_fields import run_differences
 from sim.app.options import RunOptions
 from sim.core.configuration import as_json, field_paths, with_fields
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.episodes.episode import Episode
+from sim.episodes.splits import one_house
 from stubborn import detection, exploration
 from stubborn.detection.verification import FittedVerifier
 from tests.helpers.worlds import sofa_room
@@ -141,6 +145,20 @@ def test_the_record_has_a_checksum_of_each_file_that_the_agent_reads(tmp_path: P
     before, after = checksums(fusion), checksums(changed)
     assert set(before) == {"agent.seeker.tracks.evidence.fusion", "agent.explorer.weights"}
     assert [name for name in before if before[name] != after[name]] == ["agent.seeker.tracks.evidence.fusion"]
+
+
+def test_the_houses_of_a_record_are_found_from_any_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "sofa_room.xml").write_text(sofa_room().spec.to_xml())
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path)
+    options = RunOptions(agent="random", semantics="gt", house=Path("sofa_room.xml"))
+    record = record_of(resolve(options), one_house("sofa_room.xml").identity)
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert split_of(Run(tmp_path / "run", record, {})).houses == ("sofa_room",)
+    before = cast(Any, {**record, "house": "sofa_room.xml"})  # as older versions wrote it
+    assert run_differences(before, record, resumed=True) == []
+    others = cast(Any, {**before, "split_identity": {**(record["split_identity"] or {}), "sha256": "1"}})
+    assert "house" in [path for path, *_ in run_differences(others, record, resumed=True)]
 
 
 @pytest.mark.costly
