@@ -14,17 +14,12 @@ from typing import Any
 
 from sim.app.analysis.metrics import difference_cell, difference_note, episodes_of, mean_cell
 from sim.app.analysis.tables import ResultTable
-from sim.app.evaluation.config_fields import ABSENT, differing_fields, field_text, run_differences
+from sim.app.evaluation.config_fields import ABSENT, field_text, run_differences
 from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.app.evaluation.results import RunRecord, read_record, read_results
 from sim.core.errors import ConfigError
 from sim.task.result import EpisodeResult, metrics_for
 from sim.task.trajectory import read_trajectory, trajectory_file
-
-__all__ = [
-    "Run", "code_of", "compare", "differences_table", "differing_fields", "read_run",
-    "require_same_episodes",
-]  # fmt: skip
 
 LETTERS = "ABCDEFGHIJKL"
 """Names of the runs that are compared, the first one `A`."""

@@ -8,7 +8,6 @@ import threading
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -16,6 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from sim.app.analysis.display import describe
 from sim.app.evaluation.watch import Steps
 from sim.core.vocabulary import in_words
+from sim.episodes.episode import Episode
 from sim.task.result import EpisodeResult
 
 QUIET_S = 5.0
@@ -24,19 +24,6 @@ LONGEST_QUIET_S = 60.0
 """Longest interval between two such lines: the log of a long episode stays short."""
 MAX_NAMED = 3
 """Largest number of running episodes that a line names."""
-
-
-class Started(Protocol):
-    """The fields of an episode that are reported when it begins."""
-
-    @property
-    def episode_id(self) -> str: ...  # noqa: D102
-    @property
-    def house(self) -> str: ...  # noqa: D102
-    @property
-    def goal(self) -> str: ...  # noqa: D102
-    @property
-    def in_picture(self) -> bool: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -72,7 +59,7 @@ class ProgressReport:
         self._done = self._steps_done = 0
         self._bar = _bar(console) if console.is_terminal else None
 
-    def started(self, episode: Started, steps: Steps) -> None:
+    def started(self, episode: Episode, steps: Steps) -> None:
         """Reports that an episode begins; `steps` returns its number of steps so far."""
         with self._lock:
             self._running[episode.episode_id] = _Running(steps, time.monotonic())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -110,7 +111,8 @@ class RobotAgent:
                 give_next_goal(self._agent, announced.goal, announced.seed, where)
             else:
                 episodes += 1
-                self._reset(announced)
+                agent, where = self._agent, f"Agent '{self._name}', reset"
+                ask(where, functools.partial(agent.reset, announced.goal, announced.seed))
             last = announced
             self._pursue(announced)
 
@@ -124,9 +126,6 @@ class RobotAgent:
             return
         advice = f"agent '{self._name}' does not take it" if takes is None else f"give {option}"
         raise AgentError(f"The robot's {what}: {advice}.")
-
-    def _reset(self, announced: Announced) -> None:
-        ask(f"Agent '{self._name}', reset", lambda: self._agent.reset(announced.goal, announced.seed))
 
     def _pursue(self, announced: Announced) -> None:
         """Drives until the episode, or the goal of a chain, is over."""

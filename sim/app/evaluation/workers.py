@@ -7,6 +7,7 @@ does not depend on the kind of worker (process, Ray actor); see `sim.app.evaluat
 
 from __future__ import annotations
 
+import functools
 import importlib
 import logging
 import pickle
@@ -87,13 +88,9 @@ class WorkerLost(Exception):
         super().__init__(reason)
         self.final = final
 
-    def __reduce__(self) -> tuple[Callable[..., WorkerLost], tuple[str, bool]]:
+    def __reduce__(self) -> tuple[Callable[[str], WorkerLost], tuple[str]]:
         """Returns the form for pickling, with both arguments."""
-        return _lost, (str(self), self.final)
-
-
-def _lost(reason: str, final: bool) -> WorkerLost:
-    return WorkerLost(reason, final=final)
+        return functools.partial(WorkerLost, final=self.final), (str(self),)
 
 
 class Worker(Protocol):

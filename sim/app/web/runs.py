@@ -38,11 +38,6 @@ _COLUMNS = (
 )  # fmt: skip
 
 
-def _member(folder: Path, file: Path) -> str:
-    """Returns the name of a file in the archive of a run's folder."""
-    return printable(f"{folder.name}/{file.relative_to(folder)}")
-
-
 class _Read(NamedTuple):
     """A run that was read, and the times and sizes of its files at that time."""
 
@@ -59,7 +54,8 @@ class Runs:
 
     def as_json(self) -> list[dict[str, object]]:
         """Returns the runs, the newest first; a run whose files are broken is listed with the reason."""
-        return [self._about(changed_ns, folder) for changed_ns, folder in self._newest()]
+        newest = sorted(self._found(), reverse=True)[:MAX_RUNS]
+        return [self._about(changed_ns, folder) for changed_ns, folder in newest]
 
     def episodes(self, name: str) -> list[dict[str, object]]:
         """Returns the result lines of a run, and whether each has a video.
@@ -136,7 +132,7 @@ class Runs:
             with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED, strict_timestamps=False) as archive:
                 for file in sorted(folder.rglob("*")):
                     if not file.name.startswith(".") and not file.is_symlink() and self._there(file):
-                        archive.write(file, _member(folder, file))
+                        archive.write(file, printable(f"{folder.name}/{file.relative_to(folder)}"))
         except (OSError, ValueError) as error:
             packed.close()
             raise ConfigError(f"Run '{name}' cannot be packed: {reason_of(error)}.") from None
@@ -181,9 +177,6 @@ class Runs:
         """
         a, b = (replace(self.run(name), path=Path(name)) for name in (first, second))
         return [_table_as_json(table) for table in (compare(a, b), differences_table(a, b))]
-
-    def _newest(self) -> list[tuple[int, Path]]:
-        return sorted(self._found(), reverse=True)[:MAX_RUNS]
 
     def _found(self) -> Iterator[tuple[int, Path]]:
         """Yields the folders that hold results, with the time of the last line, nanoseconds since 1970."""

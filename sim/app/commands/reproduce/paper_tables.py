@@ -133,7 +133,7 @@ def categories(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
 
     rows = [(f"{goal} ({len(some[setups[0]])})", row(some)) for goal, some in _by_goal(lines)]
     rows.append((f"all ({len(lines[setups[0]])})", row(lines)))
-    header = ("goal (episodes)", *(setup.name for setup in setups), *(_named(pair) for pair in pairs))
+    header = ("goal (episodes)", *(setup.name for setup in setups), *(f"{a.name} - {b.name}" for a, b in pairs))
     return [ResultTable("categories", f"Success, %, {setups[0].semantics} segmentation", header, rows)]
 
 
@@ -293,10 +293,6 @@ def _against(first: Sequence[EpisodeResult], second: Sequence[EpisodeResult]) ->
     changes = [b - a for a, b in zip(*values, strict=True) if a is not None and b is not None]
     ratio = replace(ratio_cell(FIRST_SIGHT, first, second), say_significant=True)
     return [ratio, str(sum(change < 0.0 for change in changes)), str(sum(change > 0.0 for change in changes))]
-
-
-def _named(pair: tuple[AgentSetup, AgentSetup]) -> str:
-    return f"{pair[0].name} - {pair[1].name}"
 
 
 def _count_of_failures(lines: Sequence[EpisodeResult]) -> str:

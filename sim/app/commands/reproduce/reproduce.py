@@ -110,7 +110,7 @@ def main(args: Args) -> int:
     setups = list(dict.fromkeys(setup for of_table in needed.values() for setup in of_table))
     splits = [part_of(of_split) for of_split in _each_split(args)]
     if args.minutes != 0.0:
-        runs = [_table_run(part, setup) for part in splits for setup in setups]
+        runs = [TableRun(_run_args(p.args, setup), p.split, p.episodes) for p in splits for setup in setups]
         run_in_turns(runs, args.chunk or (60 if len(args.splits) > 1 else 20), args.minutes, console)
     status = 0
     pages: dict[str, list[str]] = {name: [] for name in names}
@@ -305,10 +305,6 @@ def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
         executor=args.executor, address=args.address, step_timeout=args.step_timeout, noise=args.noise,
         out=_folder(args, setup), record=True,
     )  # fmt: skip
-
-
-def _table_run(part: SplitEpisodes, setup: AgentSetup) -> TableRun:
-    return TableRun(_run_args(part.args, setup), part.split, part.episodes)
 
 
 def _folder(args: Args, setup: AgentSetup) -> Path:

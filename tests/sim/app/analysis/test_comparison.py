@@ -14,14 +14,13 @@ from sim.app.analysis.comparison import (
     code_of,
     compare,
     differences_table,
-    differing_fields,
     read_run,
     require_same_episodes,
 )
 from sim.app.analysis.metrics import replicate_note
 from sim.app.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich, with_corrections
 from sim.app.commands.compare import verdict
-from sim.app.evaluation.config_fields import ABSENT, run_differences
+from sim.app.evaluation.config_fields import ABSENT, differing_fields, run_differences
 from sim.app.evaluation.intervals import MIN_PAIRS, Estimate, paired_difference
 from sim.core.interface import ConfigError
 from tests.helpers import wording
