@@ -43,10 +43,7 @@ def read_view(data: bytes) -> tuple[NDArray[np.uint8], NDArray[np.float32], Came
     """
     arrays = read_npz(data, ("rgb", "depth", "camera"), what="view", most_bytes=MAX_BYTES)
     rgb, depth = arrays["rgb"], arrays["depth"]
-    try:
-        camera = CameraModel(**json.loads(arrays["camera"].tobytes()))
-    except (ValueError, TypeError) as error:
-        raise ConfigError(f"This is not a view: its camera cannot be read: {error}.") from None
+    camera = parse_json(arrays["camera"].tobytes(), CameraModel, where="This is not a view: its camera")
     size = camera.height_px, camera.width_px
     if (rgb.dtype, rgb.shape, depth.dtype, depth.shape) != (np.uint8, (*size, 3), np.float32, size):
         raise ConfigError("This is not a view: its images have other types or sizes than its camera.")
@@ -155,7 +152,7 @@ def read_boxes(data: bytes) -> list[Box]:
             for (left, top, right, bottom), score, phrase in zip(boxes, scores, phrases, strict=True)  # pyright: ignore[reportArgumentType]
             if (category := category_of(phrase)) is not None
         ]
-    except (TypeError, ValueError, AttributeError):
+    except (TypeError, ValueError, AttributeError, OverflowError):
         raise ConfigError("its reply must have lists boxes (of four numbers), logits and phrases.") from None
     if not all(0.0 <= box.score <= 1.0 for box in rows):
         raise ConfigError("its reply has scores outside of [0, 1].")

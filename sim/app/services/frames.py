@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from sim.app.services.client import MAX_BYTES, opener_for
 from sim.core.errors import ConfigError
 from sim.core.interface import CameraModel
-from sim.core.reading import read_npz
+from sim.core.reading import parse_json, read_npz
 
 TIMEOUT_S = 5.0
 MAX_FRAMES = 64
@@ -37,21 +37,13 @@ class UnknownPictureError(ConfigError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Frame:
-    """What a camera sees, and what it is."""
+class Scene:
+    """What a frame tells besides its images: all that its file has as JSON."""
 
-    rgb: NDArray[np.uint8]
-    """(h, w, 3)."""
-    depth: NDArray[np.float32]
-    """(h, w) metres along the optical axis; 0: none or nearer than the range, the largest distance: farther."""
-    objects: NDArray[np.int16]
-    """(h, w) index of the object that each pixel shows; -1: none."""
     names: tuple[str, ...]
     """Names of the objects of the house, such as `chair_03`."""
     categories: tuple[str, ...]
     """Categories of the objects."""
-    middles_xy_m: NDArray[np.float64]
-    """(objects, 2) positions in plan at the start of the episode."""
     eye_xy_m: tuple[float, float]
     """Position of the camera in plan."""
     seed: int
@@ -61,10 +53,24 @@ class Frame:
     camera: CameraModel
     """Field of view, height and range of the camera."""
 
+
+@dataclass(frozen=True, kw_only=True)
+class Frame(Scene):
+    """What a camera sees, and what it is."""
+
+    rgb: NDArray[np.uint8]
+    """(h, w, 3)."""
+    depth: NDArray[np.float32]
+    """(h, w) metres along the optical axis; 0: none or nearer than the range, the largest distance: farther."""
+    objects: NDArray[np.int16]
+    """(h, w) index of the object that each pixel shows; -1: none."""
+    middles_xy_m: NDArray[np.float64]
+    """(objects, 2) positions in plan at the start of the episode."""
+
     def to_bytes(self) -> bytes:
         """Returns the frame as an NPZ file."""
         arrays = {name: getattr(self, name) for name in _ARRAYS}
-        others = {field.name: getattr(self, field.name) for field in fields(self) if field.name not in _ARRAYS}
+        others = {field.name: getattr(self, field.name) for field in fields(Scene)}
         text = json.dumps({**others, "camera": asdict(self.camera)})
         stream = io.BytesIO()
         np.savez(stream, allow_pickle=False, others=np.frombuffer(text.encode(), np.uint8), **arrays)
@@ -78,20 +84,8 @@ class Frame:
             ConfigError: the file is not one of `to_bytes`.
         """
         arrays = read_npz(data, (*_ARRAYS, "others"), what="frame", most_bytes=MAX_BYTES)
-        try:
-            others = json.loads(arrays.pop("others").tobytes())
-            names, categories = tuple(map(str, others["names"])), tuple(map(str, others["categories"]))
-            frame = cls(
-                **arrays,
-                names=names,
-                categories=categories,
-                eye_xy_m=(float(others["eye_xy_m"][0]), float(others["eye_xy_m"][1])),
-                seed=int(others["seed"]),
-                number=int(others["number"]),
-                camera=CameraModel(**others["camera"]),
-            )
-        except (ValueError, KeyError, TypeError, IndexError) as error:
-            raise ConfigError(f"This is not a frame: {type(error).__name__}: {error}.") from None
+        text = arrays.pop("others").tobytes()
+        frame = cls(**arrays, **vars(parse_json(text, Scene, where="This is not a frame: its text")))
         height, width = frame.objects.shape if frame.objects.ndim == 2 else (0, 0)
         right = (
             frame.rgb.dtype == np.uint8
@@ -100,8 +94,8 @@ class Frame:
             and frame.depth.shape == (height, width)
             and np.issubdtype(frame.objects.dtype, np.signedinteger)
             and height * width > 0
-            and len(names) == len(categories) == len(frame.middles_xy_m)
-            and -1 <= frame.objects.min() <= frame.objects.max() < len(names)
+            and len(frame.names) == len(frame.categories) == len(frame.middles_xy_m)
+            and -1 <= frame.objects.min() <= frame.objects.max() < len(frame.names)
         )
         if not right:
             raise ConfigError("This is not a frame: its arrays have other types, sizes or values.")

@@ -20,7 +20,7 @@ import binascii
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import anyio.to_thread
 import numpy as np
@@ -45,8 +45,11 @@ from sim.app.services.words import COCO
 from sim.core.errors import ConfigError
 from sim.core.interface import MAX_SIDE_PX
 from sim.core.pictures import decode_picture
-from sim.core.reading import parse_json, printable
+from sim.core.reading import convert, parse_json, printable
 
+T = TypeVar("T")
+Corners = tuple[float, float, float, float]
+"""A box: left, top, right and bottom edge."""
 _BYTES = "application/octet-stream"
 MAX_BYTES = 1 << 28
 """Longest request: a frame of the largest camera has 9 bytes a pixel."""
@@ -80,24 +83,24 @@ class Answers:
     def gdino(self, body: bytes) -> Response:
         """Detects what the words of a caption name."""
         request = _Request(body)
-        phrases = phrases_of(request.text("caption"))
-        return self._detected(request, phrases, request.number("box_threshold", BOX_THRESHOLD))
+        phrases = phrases_of(request.value("caption", str))
+        return self._detected(request, phrases, request.value("box_threshold", float, otherwise=BOX_THRESHOLD))
 
     def yolov7(self, body: bytes) -> Response:
         """Detects what COCO has a name for."""
         request = _Request(body)
-        return self._detected(request, COCO, request.number("conf_thres", CONFIDENCE))
+        return self._detected(request, COCO, request.value("conf_thres", float, otherwise=CONFIDENCE))
 
     def mobile_sam(self, body: bytes) -> Response:
         """Segments the object in a box."""
         request = _Request(body)
-        mask = mask_in(self._segments(request), request.box("bbox"), request.image.shape[:2])
+        mask = mask_in(self._segments(request), request.value("bbox", Corners), request.image.shape[:2])
         return JSONResponse({"cropped_mask": base64.b64encode(mask.tobytes()).decode()})
 
     def blip2itm(self, body: bytes) -> Response:
         """Scores how much of the picture shows what a text names."""
         request = _Request(body)
-        share = share_of(self._segments(request), request.text("txt"))
+        share = share_of(self._segments(request), request.value("txt", str))
         return JSONResponse({"response": share, "itm score": share})
 
     def _detected(self, request: _Request, phrases: Mapping[str, str], least_score: float) -> Response:
@@ -122,41 +125,16 @@ class _Request:
 
     def __init__(self, body: bytes) -> None:
         self._values: Mapping[str, Any] = parse_json(body, dict[str, Any], where="The request")
-        self.image = _picture(self.text("image"))
+        self.image = _picture(self.value("image", str))
         """(h, w, 3), the channels in the order of the client."""
 
-    def text(self, name: str) -> str:
-        """Returns a text.
+    def value(self, name: str, kind: type[T] | Any, *, otherwise: Any = None) -> T:
+        """Returns a value, or another one if it is missing.
 
         Raises:
-            ConfigError: it is missing or no text.
+            ConfigError: it is of another type.
         """
-        value = self._values.get(name)
-        if not isinstance(value, str):
-            raise ConfigError(f"The request needs a text '{name}'.")
-        return value
-
-    def number(self, name: str, otherwise: float) -> float:
-        """Returns a number, or another one if it is missing.
-
-        Raises:
-            ConfigError: it is no number.
-        """
-        value = self._values.get(name, otherwise)
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise ConfigError(f"'{name}' must be a number, got {printable(repr(value))[:80]}.")
-        return float(value)
-
-    def box(self, name: str) -> list[float]:
-        """Returns four numbers.
-
-        Raises:
-            ConfigError: they are no list of four numbers.
-        """
-        value = self._values.get(name)
-        if not (isinstance(value, list) and len(value) == 4 and all(type(side) in (int, float) for side in value)):
-            raise ConfigError(f"'{name}' must be four numbers, got {printable(repr(value))[:80]}.")
-        return value
+        return convert(self._values.get(name, otherwise), kind, where=f"The request, field '{name}'")
 
 
 def _picture(text: str) -> NDArray[np.uint8]:

@@ -108,6 +108,8 @@ def test_a_frame_is_the_same_after_its_bytes() -> None:
         replace(frame(), depth=np.zeros((2, 2), np.float32)).to_bytes(),
         replace(frame(), categories=("chair",)).to_bytes(),
         replace(frame(), objects=np.full((HEIGHT, WIDTH), 3, np.int16)).to_bytes(),
+        replace(frame(), number=float("inf")).to_bytes(),  # type: ignore[arg-type]
+        replace(frame(), eye_xy_m=(10**400, 0)).to_bytes(),
     ],
 )
 def test_other_bytes_are_no_frame(data: bytes) -> None:
@@ -201,8 +203,10 @@ def test_each_service_answers_in_the_form_of_vlfm(client: Client) -> None:
         ("/gdino", {"caption": "chair ."}, 400, "'image'"),
         ("/gdino", {"image": "AAAA", "caption": "chair ."}, 400, "JPEG or PNG"),
         ("/gdino", {"image": "???", "caption": "chair ."}, 400, "JPEG or PNG"),
-        ("/yolov7", {"image": jpeg(frame().rgb), "conf_thres": "high"}, 400, "must be a number"),
-        ("/mobile_sam", {"image": jpeg(frame().rgb), "bbox": [1, 2]}, 400, "four numbers"),
+        ("/yolov7", {"image": jpeg(frame().rgb), "conf_thres": "high"}, 400, "'conf_thres': expected float"),
+        ("/yolov7", {"image": jpeg(frame().rgb), "conf_thres": 10**400}, 400, "'conf_thres': number out of range"),
+        ("/mobile_sam", {"image": jpeg(frame().rgb), "bbox": [1, 2]}, 400, "'bbox': expected array of length 4"),
+        ("/mobile_sam", {"image": jpeg(frame().rgb), "bbox": [1, 2, 3, 10**400]}, 400, "number out of range"),
         ("/blip2itm", {"image": jpeg(frame(shade=5).rgb), "txt": "a"}, 404, "STUBBORN_HABITAT"),
         ("/blip2itm", {"image": jpeg(frame().rgb[::2, ::2]), "txt": "a"}, 404, "128 x 96"),
         ("/frame", b"nothing", 400, "not a frame"),

@@ -183,6 +183,7 @@ FAULTS: dict[str, tuple[Handler, str, str]] = {
         "coco",
         "runs",
     ),
+    "huge": (as_json(boxes=[[0, 0, 1, 10**400]], logits=[1], phrases=["chair"]), "vlfm", "lists boxes"),
     "score": (as_json(boxes=[[0, 0, 1, 1]], logits=[7], phrases=["chair"]), "vlfm", "scores outside"),
 }
 
