@@ -93,10 +93,14 @@ def normal_form(phrase: str) -> str:
     return " ".join(words)
 
 
+def plain(name: str) -> str:
+    """Returns a name as people read it, "chest of drawers"; a goal in words stays as it is."""
+    return "television" if name == "tv_monitor" else name.replace("_", " ")
+
+
 def in_words(goal: str) -> str:
     """Returns the name of a category, "chest of drawers", or a goal in words from its noun phrase on."""
-    words = "television" if goal == "tv_monitor" else goal.strip().replace("_", " ")
-    return re.sub(r"^((find|go to|look for) )?((the|an?) )?", "", words, flags=re.IGNORECASE)
+    return re.sub(r"^((find|go to|look for) )?((the|an?) )?", "", plain(goal).strip(), flags=re.IGNORECASE)
 
 
 def with_article(goal: str) -> str:

@@ -16,7 +16,7 @@ from sim.app.evaluation.summary import few_episodes
 from sim.core import invocation
 from sim.core.errors import debug
 from sim.core.reading import printable
-from sim.core.vocabulary import in_words
+from sim.core.vocabulary import plain
 from sim.episodes.replicates import episode_of
 from sim.task.result import METRICS, EpisodeResult, goals_found
 
@@ -75,7 +75,7 @@ def describe(result: EpisodeResult) -> str:
         outcome = "found"
     else:
         outcome = f"not found ({result.end_reason}, {result.failure})"
-    goal, steps = in_words(result.goal), counted(result.num_steps, "step")
+    goal, steps = plain(result.goal), counted(result.num_steps, "step")
     return f"{result.episode_id}: {goal} {outcome} after {steps}, {result.wall_time_s or 0.0:.0f} s"
 
 
@@ -145,7 +145,7 @@ def _episode_table(results: Sequence[EpisodeResult]) -> Table:
 
 def _goal_cell(result: EpisodeResult) -> str:
     more = "" if result.goals is None else f" + {len(result.goals) - 1}"
-    return in_words(result.goal) + more
+    return plain(result.goal) + more
 
 
 def _success_cell(result: EpisodeResult) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.viewers.topview import BLOCKED, FREE, INSTANCE, OBSTACLE, PATH, ROBOT
-from sim.core.vocabulary import in_words
+from sim.core.vocabulary import plain
 from sim.episodes.episode import Episode
 from sim.task.objectnav import Task
 
@@ -84,7 +84,7 @@ def _draw_storey(task: Task, episodes: Sequence[Episode], floor_z_m: float) -> P
     for goal, of_goal in footprints.items():
         for footprint in of_goal:
             x0, y0, x1, y1 = footprint.bounds_m
-            _write(picture, in_words(goal), at(np.array([[0.5 * (x0 + x1), 0.5 * (y0 + y1)]]))[0], taken)
+            _write(picture, plain(goal), at(np.array([[0.5 * (x0 + x1), 0.5 * (y0 + y1)]]))[0], taken)
     return picture
 
 

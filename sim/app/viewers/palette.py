@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.interface import MPCAT40, MPCAT40_ID
-from sim.core.vocabulary import in_words
+from sim.core.vocabulary import plain
 
 _GREYS = {"void": 0, "wall": 200, "floor": 110, "ceiling": 235, "door": 150, "window": 175}
 """Structure is grey, so that furniture is easy to see."""
@@ -54,6 +54,6 @@ def with_legend(semantic: NDArray[np.uint8]) -> NDArray[np.uint8]:
         cv2.rectangle(picture, swatch, [int(value) for value in PALETTE[category]], cv2.FILLED)
         cv2.rectangle(picture, swatch, (60, 60, 60), 1)
         corner = (box[0] + line_px + 2, top + round(14 * scale))
-        name = in_words(MPCAT40[category])
+        name = plain(MPCAT40[category])
         cv2.putText(picture, name, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.42 * scale, (20, 20, 20), 1, cv2.LINE_AA)
     return picture

@@ -21,7 +21,7 @@ from sim.app.analysis.report.media import link_to, picture_of, thumbnail, video_
 from sim.app.analysis.report.trend import trend
 from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.core.errors import ConfigError
-from sim.core.vocabulary import in_words
+from sim.core.vocabulary import plain
 from sim.task.explanations import explain
 
 MAX_RUNS = len(LETTERS)
@@ -99,7 +99,7 @@ def _by_size(lines: Runs, house_m2: Mapping[str, float | None]) -> list[Group]:
 def _template() -> Template:
     """Returns the template; it escapes all values and writes JSON without spaces."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
-    environment.filters["plain"] = in_words
+    environment.filters["plain"] = plain
     environment.globals |= {"css": Markup(_part("report.css")), "js": Markup(_part("report.js"))}
     environment.policies["json.dumps_kwargs"] = {
         "separators": (",", ":"),

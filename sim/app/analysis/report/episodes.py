@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from sim.app.analysis.comparison import LETTERS
 from sim.app.analysis.report.figures import goal_group
-from sim.core.vocabulary import in_words
+from sim.core.vocabulary import plain
 from sim.task.explanations import outcome
 from sim.task.result import EpisodeResult
 
@@ -84,7 +84,7 @@ def _goal(lines: Sequence[EpisodeResult]) -> str:
         return lines[0].goal
     found = [[_MARKS[goal.success == 1.0] for goal in line.goals or ()] for line in lines]
     ticked = itertools.zip_longest(*found, fillvalue=_MARKS[False])
-    return ", ".join(f"{''.join(marks)} {in_words(goal.goal)}" for goal, marks in zip(goals, ticked, strict=True))
+    return ", ".join(f"{''.join(marks)} {plain(goal.goal)}" for goal, marks in zip(goals, ticked, strict=True))
 
 
 def _numbers(lines: Sequence[EpisodeResult]) -> list[tuple[str, float | None]]:
