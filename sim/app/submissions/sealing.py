@@ -110,7 +110,7 @@ def origin_of(split: Split, folder: Path | None) -> Origin:
     """
     if folder is None:
         return "public"
-    file = seal_file(folder.resolve())
+    file = seal_file(folder)
     if not file.is_file():
         return "private"
     seal = read_seal(file)
@@ -120,6 +120,7 @@ def origin_of(split: Split, folder: Path | None) -> Origin:
 
 def seal_file(folder: Path) -> Path:
     """Returns the file of the seal next to the folder of a split."""
+    folder = folder.resolve()  # "." has no name, and a link may lie elsewhere
     return folder.with_name(f"{folder.name}.sealed.json")
 
 

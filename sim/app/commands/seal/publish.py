@@ -32,7 +32,7 @@ class Args:
 def main(args: Args) -> int:
     """Writes the seal; returns the exit status."""
     split = load_split(args.split)
-    seal, out = seal_of(split, None), args.out or seal_file(args.split.resolve())
+    seal, out = seal_of(split, None), args.out or seal_file(args.split)
     write_published(out, seal, "a seal")
     print(f"{out}: {seal.houses} houses, {seal.episodes} episodes, sha256 {seal.split_sha256}.")
     return 0

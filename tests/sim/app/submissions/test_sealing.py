@@ -73,6 +73,20 @@ def test_a_sealed_split_is_for_its_owner_only(tmp_path: Path, monkeypatch: pytes
     assert out.stat().st_mode & 0o777 == 0o700
 
 
+@pytest.mark.parametrize("how", ["here", "link"])
+def test_a_seal_lies_next_to_the_folder_itself_however_it_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, how: str
+) -> None:
+    monkeypatch.setattr(make, "make_split", lambda folder, *_, **__: load_split(tiny_split(folder)))
+    folder = tmp_path / "splits" / "new"
+    folder.mkdir(parents=True)
+    (tmp_path / "link").symlink_to(folder)
+    monkeypatch.chdir(folder)
+    out = Path() if how == "here" else tmp_path / "link"
+    assert make.main(make.Args(out=out, secret_file=tmp_path / "secret")) == 0
+    assert (tmp_path / "splits" / "new.sealed.json").is_file()
+
+
 def test_a_folder_of_the_user_stays_when_revealing_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(folder: Path, *_: object, **__: object) -> None:
         (folder / "half.xml").write_text("")
