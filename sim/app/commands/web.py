@@ -52,7 +52,7 @@ class Args:
     labels: Path | None = None
     """With --house: a JSON file {"regex over names": "category"} for houses that have other names."""
     root: Path | None = None
-    """With --house: another folder whose files the houses may use, in addition to their own folder."""
+    """With --house or --robot: another folder whose files it may use, in addition to its own folder."""
     weights: Path | None = None
     """Your network in place of the shipped one, for segmentation by rednet."""
     robot: str | None = None
@@ -115,14 +115,16 @@ def offer(args: Args) -> Offer:
 
     if len({file.stem for file in args.house}) < len(args.house):
         raise ConfigError("--house: two files have the same name; give each house another one.")
-    for_houses = args.labels, args.root
-    if not args.house and for_houses != (None, None):
-        raise ConfigError("--labels and --root need --house.")
+    if args.labels is not None and not args.house:
+        raise ConfigError("--labels needs --house.")
+    if args.root is not None and not args.house and args.robot is None:
+        raise ConfigError("--root needs --house or --robot: a file that may use this folder, too.")
     same = ("weights", "labels", "root", "seed", "profile", "noise", "config", "config_file")
     values = {name: getattr(args, name) for name in same}
     robot = None if args.robot is None else absolute_robot(args.robot)
     options = with_absolute_paths(RunOptions(robot=robot, **values))  # agents may change the current folder
-    resolve(replace(options, config=(), config_file=None, labels=None, root=None))  # these depend on agent and house
+    root = options.root if robot is not None else None
+    resolve(replace(options, config=(), config_file=None, labels=None, root=root))  # these depend on agent and house
     return Offer(
         agents=args.agent,
         explorers=args.explorer,

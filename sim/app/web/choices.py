@@ -194,7 +194,8 @@ class Choices:
         if asked.split in self._houses:
             options = replace(options, house=self._houses[asked.split], goal=goal or None)
         else:
-            options = replace(options, split=asked.split, labels=None, root=None, goal=goal if in_words else None)
+            root = options.root if options.robot is not None else None
+            options = replace(options, split=asked.split, labels=None, root=root, goal=goal if in_words else None)
         if asked.start is not None:
             options = self._with_start(options, asked, house, goal or None)
         if not isinstance(self._semantics[asked.semantics].config, NetworkConfig):
@@ -224,7 +225,7 @@ class Choices:
             options,
             house=split.house_file(house),
             labels=split.labels_path,
-            root=split.root,
+            root=split.root or options.root,
             goal=goal,
             start_deg=start_deg,
         )

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from sim.app.commands import run as sim_run
+from sim.app.commands import web
 from sim.app.composition.runner import build_parts
 from sim.app.composition.setup import resolve
 from sim.app.evaluation.results import RunRecord, read_record, read_results
@@ -29,6 +30,7 @@ from sim.episodes.splits import load_split
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.results import a_result
 from tests.helpers.worlds import room, with_box
+from tests.sim.robot.test_kinds import rover_with_a_mesh
 
 START = {"split": "traps", "house": "wedged_spawn", "goal": "bed", "agent": "oracle", "semantics": "gt"}
 OWN_AGENT = "examples.my_agent:AGENT"
@@ -108,6 +110,17 @@ def test_the_id_of_an_episode_says_its_house_and_goal(choices: Choices) -> None:
     assert (request.episode_id, request.house != "wedged_spawn") == ("val_0018", True)
     with pytest.raises(ConfigError, match=r"'val'.*'val_9999'"):
         choices.request(START | {"split": "val", "episode": "val_9999"})
+
+
+def test_a_robot_may_use_files_of_the_root_in_every_split(tmp_path: Path) -> None:
+    robot = rover_with_a_mesh(tmp_path, "../meshes/deck.obj")
+    named = '<asset><mesh name="deck" file="../meshes/deck.obj"/></asset>'
+    robot.write_text(robot.read_text().replace("<asset/>", named))
+    choices = Choices(web.offer(web.Args(robot=str(robot), root=tmp_path)))
+    for start in ({}, {"start": [1.0, 1.0, 0.0]}):
+        assert resolve(choices.request(START | start).options).options.root == tmp_path
+    with pytest.raises(ConfigError, match="--root needs --house or --robot"):
+        web.offer(web.Args(root=tmp_path))
 
 
 def test_replicates_and_episodes_that_the_page_drew_can_be_watched_again(choices: Choices) -> None:
