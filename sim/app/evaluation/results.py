@@ -125,6 +125,7 @@ class RunDirectory(Generic[LineT]):
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
+            self._lock.close()
             raise ConfigError(f"Another process is writing to --out '{self.path}'.") from None
         self._folder_existed, self._made_config = existed, False
         self.healed = ""

@@ -29,6 +29,7 @@ from sim.app.analysis.report.drawings import split_of
 from sim.app.commands.evaluate.own import segmenter_for
 from sim.app.composition.own_segmentation import OwnSegmenter
 from sim.app.composition.segmenters import file_sha256, weights_file
+from sim.app.evaluation.results import own_weights
 from sim.app.viewers.palette import with_legend
 from sim.core.configuration import with_fields
 from sim.core.files import write_picture
@@ -115,8 +116,8 @@ def segmenter_of(run: Run) -> NetworkSegmenter | OwnSegmenter:
     if semantics != "rednet":
         raise ConfigError(f"'{run.path}' was run with --semantics {semantics}, without a network.")
     detector = tree.get("detector") or {}
-    named = run.config.get("weights") or run.config.get("settings", {}).get("detector.weights")
-    file = weights_file(Path(named) if named else None)
+    own = own_weights(run.config)
+    file = weights_file(Path(own) if own else None)
     checksum = run.config.get("files_sha256", {}).get("weights")
     if checksum is not None and checksum != file_sha256(file):
         raise ConfigError(f"'{run.path}' was run with other weights than '{file}' holds now.")

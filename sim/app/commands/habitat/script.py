@@ -22,7 +22,7 @@ import tyro
 
 from sim.app import cli
 from sim.app.evaluation.own_code import place_of, text_of
-from sim.core.errors import ConfigError, ObjectNavError
+from sim.core.errors import ConfigError, ObjectNavError, debug
 from sim.core.invocation import command
 from sim.robot.config import MotionKind
 
@@ -95,6 +95,7 @@ def _run_elsewhere(args: Args) -> int:
         if name not in ("script", "environment") and value is not None
         for word in (f"--{name}", str(value))
     ]
+    options += ["--debug"] if debug() else []
     return subprocess.call([str(python), "-m", "sim.app.commands.main", "habitat", args.script, *options])
 
 

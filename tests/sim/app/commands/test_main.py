@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from sim.app.commands.habitat.script import has_lab
 from sim.app.commands.main import COMMANDS, entry
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -136,3 +137,14 @@ def test_no_file_changes_where_modules_are_looked_for() -> None:
         if "sys.path." + "insert" in file.read_text(encoding="utf-8")
     ]
     assert files == ["sim/app/composition/imports.py"]  # the current folder, where `--agent package.module:NAME` looks
+
+
+@pytest.mark.skipif(has_lab(), reason="the script then runs in this Python")
+def test_a_script_of_habitat_runs_elsewhere_with_all_options(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    python = tmp_path / "bin" / "python"
+    python.parent.mkdir()
+    python.write_text('#!/bin/sh\necho "$@"\n')
+    python.chmod(0o755)
+    words = ["habitat", str(Path(__file__)), "--split", "val", "--environment", str(tmp_path), "--debug"]
+    assert entry(words) == 0
+    assert f"habitat {Path(__file__)} --split val --debug" in capfd.readouterr().out

@@ -109,8 +109,10 @@ def test_runs_without_a_list_of_codes_name_their_code_and_code_that_ran_nothing_
 
 def test_two_writers_in_one_folder_are_refused(tmp_path: Path) -> None:
     run = opened(tmp_path, CONFIG)
-    with pytest.raises(ConfigError, match="Another process"):
+    with pytest.raises(ConfigError, match="Another process") as refused:
         opened(tmp_path, CONFIG)
+    locks = [link for link in Path("/proc/self/fd").iterdir() if os.path.realpath(link) == str(tmp_path / ".lock")]
+    assert (len(locks), refused.type) == (1, ConfigError)  # the file of the one that was refused is closed
     run.close()
 
 
