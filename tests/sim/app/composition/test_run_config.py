@@ -183,8 +183,9 @@ def test_the_command_that_a_report_prints_repeats_the_settings(tmp_path: Path) -
 
 def test_the_command_that_a_report_prints_has_the_options_that_are_not_the_default() -> None:
     chosen = {"seed_key": "k", "noise": "harsh", "motion": "sliding", "shard": "1/2", "workers": 2, "rerun_save": True}
-    record: Any = {"agent": "random", "semantics": "gt", "split": "val", "episodes": 5, "profile": "fast", "seed": 0}
-    words = shlex.split(command_of({**record, **chosen, "executor": "ray", "view": True, "only": []}))[2:]
+    record = {"agent": "random", "semantics": "gt", "split": "val", "episodes": 5, "profile": "fast", "seed": 0}
+    record |= chosen | {"executor": "ray", "view": True, "only": []}
+    words = shlex.split(command_of(cast(Any, record)))[2:]
     assert cli.parse(RunOptions, words) == RunOptions(agent="random", semantics="gt", **cast(Any, chosen))
     assert not {"--profile", "--seed"} & set(words)
 
