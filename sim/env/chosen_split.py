@@ -31,6 +31,8 @@ def chosen_split(
         ConfigError: there is no such split or house, or the options contradict each other.
         HouseError: there is no such file.
     """
+    if not isinstance(split, str | Path):
+        raise ConfigError(f"split must be the name or the folder of a split, got {split!r}.")
     if isinstance(houses, str | Path):
         raise ConfigError(f"houses must be a list of names or files, got '{houses}'; house= takes one file.")
     if house is not None and houses:

@@ -159,6 +159,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._cameras = cameras_of(self.sensors)
         self.truth_images: dict[str, NDArray] = {}
         """Images that were rendered last, without noise: at least those of `truth`."""
+        if isinstance(truth, str):
+            raise ConfigError(f"truth must be a tuple of names of images, got '{truth}'.")
         self._truth = tuple(truth)
         self.render_mode = render_mode
         self.camera_model = as_settings(camera, CameraModel(), name="camera")

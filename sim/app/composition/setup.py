@@ -269,8 +269,9 @@ def _received(content: bytes) -> Setup:
 
 def _check(options: RunOptions) -> None:
     """Raises ConfigError if options contradict each other or are out of range."""
-    if options.house is None and any(value is not None for value in (options.labels, options.start_deg)):
-        raise ConfigError("--labels and --start-deg need --house.")
+    for option, value in (("--labels", options.labels), ("--start-deg", options.start_deg)):
+        if options.house is None and value is not None:
+            raise ConfigError(f"{option} needs --house.")
     if options.root is not None and options.house is None and options.robot is None:
         raise ConfigError("--root needs --house or --robot: a file that may use this folder, too.")
     require_root(options.root)

@@ -276,6 +276,8 @@ def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, 
         (lambda: TaskConfig(max_steps=10**12), "max_steps"),
         (lambda: ObjectNavEnv(max_steps=2.5), r"whole number.*2\.5"),  # type: ignore[arg-type]
         (lambda: ObjectNavEnv(goal=3), "goal must be"),  # type: ignore[arg-type]
+        (lambda: ObjectNavEnv(split=3), "split must be"),  # type: ignore[arg-type]
+        (lambda: ObjectNavEnv(truth="rgb"), "truth must be"),
         (lambda: ObjectNavEnv(house="a.xml", start=(0, 0, 0)), "start must be a Pose"),  # type: ignore[arg-type]
         (lambda: ObjectNavEnv(cameras=["left"]), "cameras must be a dict"),  # type: ignore[arg-type]
         (lambda: Episode("e", "h", "sofa", Pose(math.nan, 0.0, 0.0)), "10000"),

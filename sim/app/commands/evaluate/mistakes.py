@@ -144,7 +144,7 @@ def decisive_step(trajectory: Trajectory) -> int:
     """Returns the number of the frame to show: that of the STOP, or else the frame with most of the goal."""
     if trajectory.end_reason == "stop":
         return trajectory.num_steps
-    return int(np.nanargmax(trajectory.goal_share))
+    return int(np.argmax(np.nan_to_num(trajectory.goal_share, nan=-1.0)))
 
 
 def render_at(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dict[str, NDArray]:

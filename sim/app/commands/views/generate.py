@@ -139,7 +139,8 @@ def main(args: Args) -> int:
     todo = [task for task in missing if shard.contains(task.number)]
     if "instances" not in args.extras:
         print("Without --extras instances, the views have no ids of objects, which `train segmentation` needs.")
-    print(f"{len(tasks)} shards, {len(tasks) - len(missing)} complete, {len(todo)} to generate here.", flush=True)
+    complete = f"{len(tasks) - len(missing)} complete, {len(todo)} to generate here."
+    print(f"{display.counted(len(tasks), 'shard')}, {complete}", flush=True)
     began, made = time.perf_counter(), 0
     for note in ordered_map(functools.partial(make_shard, args, config), todo, executor=executor):
         made += note.views
@@ -346,6 +347,6 @@ def _summary(notes: Sequence[ShardNote]) -> str:
     views, size_bytes = sum(note.views for note in notes), sum(note.size_bytes for note in notes)
     houses = len({note.house for note in notes})
     return (
-        f"{views} views of {houses} houses in {len(notes)} shards, {size_bytes >> 20} MB; of the processes' time: "
-        f"{share}."
+        f"{display.counted(views, 'view')} of {display.counted(houses, 'house')} in "
+        f"{display.counted(len(notes), 'shard')}, {size_bytes >> 20} MB; of the processes' time: {share}."
     )

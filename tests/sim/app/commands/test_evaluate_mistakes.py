@@ -91,6 +91,8 @@ def test_the_decisive_frame_is_the_last_or_the_one_that_shows_most(recorded: Pat
     )
     assert show_mistakes.decisive_step(longer) == 3  # it stopped there
     assert show_mistakes.decisive_step(replace(longer, end_reason="max_steps")) == 2
+    unknown = replace(longer, end_reason="max_steps", goal_share=np.full_like(longer.goal_share, np.nan))
+    assert show_mistakes.decisive_step(unknown) == 0
 
 
 def test_words_name_the_true_categories_where_the_goal_is_seen() -> None:

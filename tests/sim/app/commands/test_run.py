@@ -190,6 +190,7 @@ BROKEN_HOUSES = {
         (("--house", "HOUSE", "--goal", "toilet"), "toilet"),
         (("--house", "HOUSE", "--start-deg", "2.9 2.9 0"), "wall"),
         (("--house", "HOUSE", "--start-deg", "here"), "here"),
+        (("--labels", "rules.json"), "--labels needs --house"),
         (("--house", "nowhere.xml"), "nowhere.xml"),
         (("--house", "not_xml.xml"), "not_xml.xml"),
         (("--house", "no_floor.xml"), "floor"),
