@@ -125,7 +125,7 @@ def _episode_table(results: Sequence[EpisodeResult]) -> Table:
     for name in ("episode", "goal"):
         table.add_column(name)
     table.add_column("success")
-    for name in ("SPL", "steps", "path m", "shortest m", "left m", "collisions", "steps/s"):
+    for name in ("SPL", "steps", "path m", "shortest m", "to go m", "collisions", "steps/s"):
         table.add_column(name, justify="right")
     for result in sorted(results, key=lambda result: result.episode_id):
         table.add_row(

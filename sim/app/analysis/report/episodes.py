@@ -50,7 +50,7 @@ class Row:
 
 _MARKS = {True: "\N{CHECK MARK}", False: "\N{BALLOT X}"}
 _NUMBERS = (("SPL", "spl", 2), ("steps", "num_steps", 0), ("path m", "path_length", 1))
-_ALONE = (*_NUMBERS, ("left m", "distance_to_goal", 1), ("collisions", "collisions", 0))
+_ALONE = (*_NUMBERS, ("to go m", "distance_to_goal", 1), ("collisions", "collisions", 0))
 _IN_PAIRS = (("SPL", "spl", 2), ("steps", "num_steps", 0), ("collisions", "collisions", 0))
 _TOKENS = {"failed": "not found", "only-a": "only A found it", "only-b": "only B found it"}
 _TOKENS |= {"both": "both found it", "neither": "neither found it"}
