@@ -117,7 +117,7 @@ function showState(news) {
     if (closed) $("doing").textContent = outcome.sentence;
   }
   if (news.legends) {
-    $("segmentation-name").textContent = news.segmentation ? `Segmentation (${news.segmentation})` : "Segmentation";
+    $("segmentation-name").textContent = news.segmentation ? `Segments (${news.segmentation})` : "Segmentation";
     fill($("map-legend"), news.legends.map.map(([name, colour]) => legendItem(name, colour)));
     fill($("plan-legend"), news.legends.plan.map(([name, colour]) => legendItem(name, colour)));
   }
