@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -58,7 +59,7 @@ class SensorNode:
         axes = (Vector3.x_axis(), Vector3.y_axis(), Vector3.z_axis())
         by_x, by_y, by_z = (Quaternion.rotation(angle, axis) for angle, axis in zip((x, y, z), axes, strict=True))
         self.translation = Vector3(self._spec.position)
-        self.rotation = by_x * by_y * by_z
+        self.rotation = by_z * by_y * by_x  # each turns about an axis of the agent, as in habitat-sim
 
 
 class Sensor:
@@ -88,6 +89,8 @@ class Agent:
         """Puts the robot where the agent was put, in physics."""
         self.put: Pose | None = None
         """The pose that was set since the last action, if it is not that of the robot."""
+        self.initial_state = AgentState()
+        """Where `reset` puts the agent."""
 
     def enter(self, world: World, settle: Callable[[], None]) -> None:
         """Moves into the world of a simulator."""
@@ -128,8 +131,10 @@ class Agent:
             state: its position (3,) and rotation (`np.quaternion`, or xyzw).
             reset_sensors: also restore the poses of the sensors on the agent.
             infer_sensor_states: exists for scripts that give it; True.
-            is_initial: exists for scripts that give it.
+            is_initial: also return there when the agent is reset.
         """
+        if is_initial:
+            self.initial_state = copy.deepcopy(state)
         rotation = rotation_of(state.rotation)
         position: list[float] = np.asarray(state.position, np.float64).tolist()
         pose = from_agent_state(position, [rotation.x, rotation.y, rotation.z, rotation.w])
@@ -147,9 +152,8 @@ class Agent:
         )
 
     def reset(self) -> None:
-        """Restores the poses of the sensors."""
-        for sensor in self.sensors.values():
-            sensor.node.reset()
+        """Restores the initial pose of the agent, and the poses of the sensors."""
+        self.set_state(self.initial_state)
 
     def eye(self, uuid: str, height_m: float) -> BodyPose:
         """Returns a robot's pose from which a camera at a height on its axis sees what a sensor sees.

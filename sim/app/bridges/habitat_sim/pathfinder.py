@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.app.bridges.habitat_sim.maths import Vector3
 from sim.app.bridges.habitat_sim.settings import NavMeshSettings
+from sim.core.errors import ConfigError
 from sim.core.interface import Action
 from sim.env.oracle import Destination, Follower
 from sim.episodes.habitat import from_position, to_position
@@ -122,15 +123,18 @@ class Storey:
         """The number of connected parts."""
         return int(self.parts.max())
 
-    def nearest(self, x_m: float, y_m: float, within_m: float) -> tuple[float, float] | None:
-        """Returns the nearest point on a free cell; the point itself if it lies on one."""
-        space = self.space
-        row, col = space.frame.cell(x_m, y_m)
-        if 0 <= row < space.free.shape[0] and 0 <= col < space.free.shape[1] and space.free[row, col]:
+    def nearest(self, x_m: float, y_m: float, within_m: float, part: int = 0) -> tuple[float, float] | None:
+        """Returns the nearest point on a free cell, of the connected part with a number unless it is 0.
+
+        That is the point itself if it lies on one.
+        """
+        frame, cells = self.space.frame, self.parts == part if part else self.space.free
+        row, col = frame.cell(x_m, y_m)
+        if 0 <= row < cells.shape[0] and 0 <= col < cells.shape[1] and cells[row, col]:
             return x_m, y_m
-        window = space.frame.index_of((x_m, y_m, x_m, y_m), within_m)
-        x, y = space.frame.axes(window)
-        away_m = np.where(space.free[window], np.hypot(x[None, :] - x_m, y[:, None] - y_m), math.inf)
+        window = frame.index_of((x_m, y_m, x_m, y_m), within_m)
+        x, y = frame.axes(window)
+        away_m = np.where(cells[window], np.hypot(x[None, :] - x_m, y[:, None] - y_m), math.inf)
         if away_m.min(initial=math.inf) > within_m:
             return None
         row, col = np.unravel_index(int(away_m.argmin()), away_m.shape)
@@ -216,21 +220,23 @@ class PathFinder:
 
         Args:
             point: (3,).
-            island_index: exists for scripts that give it; -1.
+            island_index: number of the connected part, see `get_island`; -1: any.
         """
         x_m, y_m, z_m = from_position(_three(point))
-        found = self.snapped(x_m, y_m, z_m)
+        found = self.snapped(x_m, y_m, z_m, island_index)
         return Vector3(np.nan) if found is None else Vector3(to_position(*found[1], found[0].floor_z_m))
 
-    def snapped(self, x_m: float, y_m: float, z_m: float) -> tuple[Storey, tuple[float, float]] | None:
+    def snapped(
+        self, x_m: float, y_m: float, z_m: float, island: int = -1
+    ) -> tuple[Storey, tuple[float, float]] | None:
         """Returns the storey and the nearest point on it; None: there is none, or a coordinate is not finite."""
         if not all(map(math.isfinite, (x_m, y_m, z_m))):
             return None
-        storey = self._storey_at(z_m, SNAP_M)
-        if storey is None:
+        storey, (on, part) = self._storey_at(z_m, SNAP_M), self._part(island)
+        if storey is None or on not in (None, storey):
             return None
         for within_m in (NEAREST_FREE_M, SNAP_M):
-            place = storey.nearest(x_m, y_m, within_m)
+            place = storey.nearest(x_m, y_m, within_m, part)
             if place is not None:
                 return storey, place
         return None
@@ -284,10 +290,12 @@ class PathFinder:
         return Vector3(to_position(x_m, y_m, z_m))
 
     def get_random_navigable_point(self, max_tries: int = 10, island_index: int = -1) -> Vector3:
-        """Returns a random point where the middle of the robot can be."""
-        free = [int(storey.space.free.sum()) for storey in self.storeys]
-        storey = self.storeys[int(self._rng.choice(len(free), p=np.array(free) / sum(free)))]
-        cells = np.argwhere(storey.space.free)
+        """Returns a random point where the middle of the robot can be; `island_index` is as for `snap_point`."""
+        storey, part = self._part(island_index)
+        if storey is None:
+            free = [int(storey.space.free.sum()) for storey in self.storeys]
+            storey = self.storeys[int(self._rng.choice(len(free), p=np.array(free) / sum(free)))]
+        cells = np.argwhere(storey.parts == part if part else storey.space.free)
         x_m, y_m = storey.space.frame.to_metres(cells[self._rng.integers(len(cells))]).tolist()
         return Vector3(to_position(x_m, y_m, storey.floor_z_m))
 
@@ -296,9 +304,9 @@ class PathFinder:
     ) -> Vector3:
         """Returns such a point within a radius of another; NaN if there is none."""
         x_m, y_m, z_m = from_position(_three(circle_center))
-        storey = self._storey_at(z_m, SNAP_M)
-        if storey is not None:
-            places = storey.space.frame.to_metres(np.argwhere(storey.space.free))
+        storey, (on, part) = self._storey_at(z_m, SNAP_M), self._part(island_index)
+        if storey is not None and on in (None, storey):
+            places = storey.space.frame.to_metres(np.argwhere(storey.parts == part if part else storey.space.free))
             places = places[np.hypot(*(places - (x_m, y_m)).T) <= radius]
             if len(places):
                 x_m, y_m = places[self._rng.integers(len(places))].tolist()
@@ -348,23 +356,37 @@ class PathFinder:
         0: there is none.
         """
         index = int(pt) if isinstance(pt, numbers.Integral) else self.get_island(pt)
-        for storey in self.storeys:
-            if 0 <= index < storey.part_count:
-                cells = np.argwhere(storey.parts == index + 1)
-                middle = 0.5 * (cells.min(axis=0) + cells.max(axis=0))
-                return float(np.hypot(*(cells - middle).T).max()) * storey.space.frame.cell_m
-            index -= storey.part_count
-        return 0.0
+        if index < 0:
+            return 0.0
+        storey, part = self._part(index)
+        assert storey is not None
+        cells = np.argwhere(storey.parts == part)
+        middle = 0.5 * (cells.min(axis=0) + cells.max(axis=0))
+        return float(np.hypot(*(cells - middle).T).max()) * storey.space.frame.cell_m
 
     def island_area(self, island_index: int = -1) -> float:
         """Returns the area of the connected part with a number, square metres; -1: of all."""
-        if island_index < 0:
-            return self.navigable_area
-        for storey in self.storeys:
-            if island_index < storey.part_count:
-                return float((storey.parts == island_index + 1).sum()) * storey.space.frame.cell_m**2
-            island_index -= storey.part_count
-        return 0.0
+        storey, part = self._part(island_index)
+        return (
+            self.navigable_area
+            if storey is None
+            else float((storey.parts == part).sum()) * storey.space.frame.cell_m**2
+        )
+
+    def _part(self, island: int) -> tuple[Storey | None, int]:
+        """Returns the storey of an island and the number of its part there; None and 0 for a negative number.
+
+        Raises:
+            ConfigError: there is no such island.
+        """
+        index = island
+        for storey in self.storeys if island >= 0 else ():
+            if index < storey.part_count:
+                return storey, index + 1
+            index -= storey.part_count
+        if island >= 0:
+            raise ConfigError(f"There is no island {island}: the free space has {self.num_islands}.")
+        return None, 0
 
     def load_nav_mesh(self, path: str) -> bool:
         """Returns False: the free space is computed from the house, and no file of a mesh is read."""

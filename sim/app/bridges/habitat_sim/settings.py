@@ -51,7 +51,7 @@ class SensorSpec:
     position: Any = field(default_factory=lambda: np.array([0.0, 1.5, 0.0], np.float32))
     """Right of, above and behind the middle of the robot on the floor, metres."""
     orientation: Any = field(default_factory=lambda: np.zeros(3, np.float32))
-    """Rotation about the x axis (up), y axis (left) and z axis, radians."""
+    """Rotation about the agent's x axis (up), then its y axis (left) and its z axis, radians."""
     hfov: Any = 90.0
     """Horizontal field of view, degrees."""
     noise_model: str = "None"

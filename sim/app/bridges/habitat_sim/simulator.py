@@ -109,7 +109,8 @@ class Simulator:
     def _put_initially(self) -> None:
         """Puts the agent at a random place, as Habitat does, until it is put elsewhere."""
         place = self.pathfinder.get_random_navigable_point()
-        self.agents[0].set_state(AgentState(np.asarray(place), quat_from_coeffs(to_rotation(0.5 * math.pi))))
+        state = AgentState(np.asarray(place), quat_from_coeffs(to_rotation(0.5 * math.pi)))
+        self.agents[0].set_state(state, is_initial=True)
 
     @property
     def semantic_scene(self) -> SemanticScene:
@@ -144,12 +145,13 @@ class Simulator:
         self.pathfinder.seed(self._seed)
 
     def reset(self, agent_ids: int | Sequence[int] | None = None) -> dict[str, Any]:
-        """Restores the house; returns what the cameras see. Physics restarts at the next action or observation."""
+        """Restores the house and the agent's initial state; returns what the cameras see.
+
+        Physics restarts at the next action or observation.
+        """
         self.world.restore()
         self.agents[0].reset()
         self._fresh, self._collided = True, False
-        if self.agents[0].put is None:
-            self.agents[0].set_state(self.agents[0].get_state(), reset_sensors=False)
         return self._render()
 
     def reconfigure(self, config: Configuration) -> None:

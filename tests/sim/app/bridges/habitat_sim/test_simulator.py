@@ -59,14 +59,14 @@ def simulator(tmp_path: Path, house: House, *, turn_deg: float = 30.0, **cameras
     return Simulator(Configuration(SimulatorConfiguration(scene_id=str(file)), [agent]))
 
 
-def put(sim: Simulator, x: float, z: float, rotation: Any = AHEAD) -> None:
-    sim.agents[0].set_state(AgentState(np.array([x, 0.0, z]), rotation))
+def put(sim: Simulator, x: float, z: float, rotation: Any = AHEAD, *, initial: bool = False) -> None:
+    sim.agents[0].set_state(AgentState(np.array([x, 0.0, z]), rotation), is_initial=initial)
 
 
 @pytest.fixture
 def empty(tmp_path: Path) -> Iterator[Simulator]:
     with simulator(tmp_path, room(4, 4)) as sim:
-        put(sim, 0.0, 0.0)
+        put(sim, 0.0, 0.0, initial=True)
         yield sim
 
 
@@ -109,6 +109,7 @@ def test_cameras_look_from_where_they_are_mounted(tmp_path: Path) -> None:
         ([0.0, 0.88, -0.1], [0.0, 0.0, 0.0], 1.9),
         ([0.5, 0.88, 0.0], [0.0, math.pi / 2, 0.0], 2.5),
         ([0.0, 1.0, 0.0], [-math.pi / 2, 0.0, 0.0], 1.0),
+        ([0.0, 1.0, 0.0], [-math.pi / 4, math.pi / 2, 0.0], math.sqrt(2.0)),  # to the left, and down from there
     ):
         with simulator(tmp_path, room(4, 4)) as sim:
             sim.add_sensor(
@@ -125,6 +126,16 @@ def test_looking_up_tilts_all_cameras_until_the_next_reset(empty: Simulator) -> 
     assert empty.step(4)["depth"][24, 32] == pytest.approx(level / math.cos(math.radians(30.0)), abs=0.03)
     assert empty.agents[0].state.sensor_states["depth"].rotation.x == pytest.approx(math.sin(math.radians(15.0)))
     assert empty.reset()["depth"][24, 32] == pytest.approx(level, abs=0.01)
+
+
+def test_a_reset_brings_the_agent_back_to_its_initial_state(empty: Simulator) -> None:
+    put(empty, 1.0, 0.5, initial=True)
+    put(empty, -1.0, 0.5)
+    empty.step(1)
+    empty.reset()
+    assert empty.agents[0].state.position == pytest.approx([1.0, 0.0, 0.5], abs=1e-6)
+    empty.step(1)
+    assert empty.agents[0].state.position == pytest.approx([1.0, 0.0, 0.25], abs=0.01)
 
 
 def test_a_pose_that_is_set_and_set_back_leaves_physics_untouched(empty: Simulator) -> None:
@@ -234,6 +245,20 @@ def test_the_pathfinder_knows_where_the_robot_fits(empty: Simulator) -> None:
     assert all(finder.is_navigable(finder.get_random_navigable_point()) for _ in range(5))
     near = finder.get_random_navigable_point_near([1.0, 0.0, 1.0], 0.3)
     assert math.dist(near, (1.0, 0.0, 1.0)) <= 0.3
+
+
+def test_points_on_an_island_are_on_that_island(tmp_path: Path) -> None:
+    house = with_box(room(6, 4), "cabinet_00", centre_m=(1.0, 0.0, 0.5), half_m=(0.2, 2.0, 0.5))
+    with simulator(tmp_path, house) as sim:
+        finder = sim.pathfinder
+        left, right = finder.get_island([-1.0, 0.0, 0.0]), finder.get_island([2.0, 0.0, 0.0])
+        assert {left, right} == {0, 1}
+        assert finder.island_area(left) > finder.island_area(right) > 0.0
+        assert all(finder.get_random_navigable_point(island_index=right)[0] > 1.2 for _ in range(10))
+        assert finder.get_random_navigable_point_near([0.5, 0.0, 0.0], 1.5, island_index=right)[0] > 1.2
+        assert finder.snap_point([0.5, 0.0, 0.0], right) == pytest.approx([1.39, 0.0, 0.0], abs=0.03)
+        with pytest.raises(ConfigError, match="There is no island 2: the free space has 2"):
+            finder.snap_point([0.5, 0.0, 0.0], 2)
 
 
 def test_steps_without_physics_stop_or_slide(empty: Simulator) -> None:
