@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float64
@@ -25,14 +25,6 @@ class Features(NamedTuple):
     """Highest score of the target."""
     maximum_other: float
     """Highest score of any other category."""
-
-
-class Classifier(Protocol):
-    """Estimates the probability that a candidate is true."""
-
-    def probability(self, features: Features) -> float:
-        """Returns the probability, in [0, 1]."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -262,12 +262,6 @@ class Tracks:
         """Returns the number of voxels of each track; 0 for a track that was merged into another one."""
         return self._size[tracks]
 
-    def shown(
-        self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int
-    ) -> Int16[np.ndarray, "h w"]:
-        """Returns the track of each pixel of an entered frame, at a resolution of `columns` columns; 0: no track."""
-        return self.pixels(depth, pose, columns).track
-
     def pixels(self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int) -> Pixels:
         """Returns track and place of the pixels of an entered frame, at a resolution of `columns` columns."""
         _, voxel = self._voxels(self._rays_for(columns), depth, pose)

@@ -16,7 +16,7 @@ import msgspec
 
 from sim.core.interface import MPCAT40, ConfigError, SegmenterSpec
 from sim.core.reading import Number, convert, read_json
-from stubborn.detection.classifiers import Classifier, Features, NaiveBayes
+from stubborn.detection.classifiers import Features, NaiveBayes
 
 FOLDER = Path(__file__).parent / "verifiers"
 """Folder of the shipped parameters."""
@@ -100,9 +100,9 @@ class AcceptAll:
 class FittedVerifier:
     """A verifier that accepts candidates which are true with a higher probability than `least_probability`."""
 
-    by_category: Mapping[str, Classifier]
+    by_category: Mapping[str, NaiveBayes]
     """Classifiers of the goal categories with enough examples."""
-    pooled: Classifier
+    pooled: NaiveBayes
     """Classifier of all other goal categories."""
     least_probability: float = 0.5
     """The paper's is one half."""

@@ -44,19 +44,13 @@ GROUND: tuple[tuple[str, Colour], ...] = (("driven over", SWEPT), ("floor seen",
 _SMALLEST_SIDE_M, _STRIDE_M, _EDGE_M = 8.0, 2.0, 0.25
 
 
-def draw_map(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False) -> NDArray[np.uint8]:
-    """Returns the agent's map around the robot, uint8 RGB (size_px, size_px + legend, 3); x is up, y is left.
-
-    With `whole` the picture shows the known part of the map instead of the local window.
-    """
+def draw_map(agent: StubbornAgent, *, size_px: int = 720) -> NDArray[np.uint8]:
+    """Returns the known part of the agent's map, uint8 RGB (size_px, size_px + legend, 3); x is up, y is left."""
     pose = agent.pose or Pose(0.0, 0.0, 0.0)
-    window = agent.navmap.frame.window_at(pose.x_m, pose.y_m, agent.config.window_cells)
-    if whole:
-        known = agent.navmap.known_window(margin_cells=10).frame
-        x_m, y_m = known.mesh()
-        edge_cells = min(max(known.shape), min(agent.navmap.frame.shape))
-        window = agent.navmap.frame.window_at(float(x_m.mean()), float(y_m.mean()), edge_cells)
-    view = agent.navmap.view(window)
+    known = agent.navmap.known_window(margin_cells=10).frame
+    x_m, y_m = known.mesh()
+    edge_cells = min(max(known.shape), min(agent.navmap.frame.shape))
+    view = agent.navmap.view(agent.navmap.frame.window_at(float(x_m.mean()), float(y_m.mean()), edge_cells))
     canvas = Canvas(paint_layers(view, agent.config.mapping.candidate_score), view.frame, size_px)
     _draw_intention(canvas, agent, pose)
     canvas.robot(pose, agent.robot.radius_m)
@@ -74,10 +68,8 @@ class AgentMapPainter:
     legend = (*LEGEND, *GROUND)
     """Name and colour of each item in the picture."""
 
-    def __init__(self, agent: StubbornAgent, *, show_route: bool = True) -> None:
-        """If `show_route` is False, the route and its goal are not drawn."""
+    def __init__(self, agent: StubbornAgent) -> None:
         self.agent = agent
-        self.show_route = show_route
         self._navmap: NavMap | None = None
         self._middle_m, self._side_m = (0.0, 0.0), _SMALLEST_SIDE_M
 
@@ -92,16 +84,15 @@ class AgentMapPainter:
         cells = round(self._side_m / agent.config.cell_m)
         view = agent.navmap.view(agent.navmap.frame.window_at(*self._middle_m, cells))
         canvas = Canvas(paint_layers(view, agent.config.mapping.candidate_score), view.frame, size_px)
-        if self.show_route:
-            _draw_intention(canvas, agent, pose)
+        _draw_intention(canvas, agent, pose)
         canvas.robot(pose, agent.robot.radius_m)
         if size_px >= ROOM_FOR_TEXT_PX:
             canvas.scale_bar()
         return canvas.image
 
     def words(self) -> str:
-        """Returns the agent's current activity; "" if its route is not shown."""
-        return describe_intention(self.agent) if self.show_route else ""
+        """Returns the agent's current activity."""
+        return describe_intention(self.agent)
 
     def _grow(self, pose: Pose) -> None:
         """Enlarges the area of the picture when the known ground, or the robot, comes near its edge."""

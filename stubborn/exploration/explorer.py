@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
-from typing import Literal, Protocol, runtime_checkable
+from typing import Literal, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool
@@ -26,6 +26,7 @@ from sim.core.interface import Action, CameraModel
 from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.planner import FreeSpace, Goal, Planner, Route
 
+T = TypeVar("T")
 Search = Generator[Goal, Route | None, Route | None]
 """Yields goals, gets the route to each or None, and returns the route to follow or None."""
 Exploration = Generator[Goal, Route | None, Route | Action | None]
@@ -104,10 +105,14 @@ class Ground:
 
 def run_explorer(explorer: Explorer, ground: Ground) -> Route | Action | None:
     """Plans to the goals that an explorer yields, and returns its choice."""
-    exploration = explorer.explore(ground)
+    return planned(explorer.explore(ground), ground.planner, ground.pose)
+
+
+def planned(exploration: Generator[Goal, Route | None, T], planner: Planner, pose: Pose) -> T:
+    """Plans to the goals that a generator yields, and returns what it returns."""
     try:
         goal = next(exploration)
         while True:
-            goal = exploration.send(ground.planner.route(goal, ground.pose))
+            goal = exploration.send(planner.route(goal, pose))
     except StopIteration as ended:
         return ended.value

@@ -273,7 +273,9 @@ class Mapper:
         sight = SightLines.of_frame(
             d, rays.up, rays.left, camera_pose, rise_m=self._band_m[1] - self.camera.height_m
         ).towards(target_m)
-        passed = self._occupancy.passes(view.frame, rows, cols, sight, self.config.candidate_gap_m)
+        range_m = self.camera.min_depth_m, self.camera.max_depth_m
+        drop_m = self.camera.height_m - self._band_m[0]
+        passed = sight.passes(view.frame, rows, cols, drop_m, range_m, self.config.candidate_gap_m)
         view.score_max[rows[passed], cols[passed]] = 0.0
         view.score_sum[rows[passed], cols[passed]] = 0.0
 

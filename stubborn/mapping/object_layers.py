@@ -80,15 +80,11 @@ class AllFrames:
         np.maximum(view.score_max, frame.target, out=view.score_max)
 
 
-class LatestFrame:
+class LatestFrame(AllFrames):
     """The score of one frame in place of the layers: that of the frame in which a cell was last in view.
 
     The memory of the agent `latest-frame`. `frames_in_view` still counts frames: exploration reads it.
     """
-
-    def __init__(self, candidate_score: float) -> None:
-        """A cell becomes a candidate at a score higher than `candidate_score`."""
-        self.candidate_score = candidate_score
 
     def add(self, view: NavMap, frame: FrameScores, step: int) -> None:
         """See `ObjectLayers`."""

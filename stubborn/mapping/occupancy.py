@@ -211,18 +211,6 @@ class Occupancy:
             bounds, solid, tall, *layers, *rule, *sight.geometry(view.frame), self._drop_m, *range_m, c.margin_m
         )
 
-    def passes(
-        self,
-        frame: GridFrame,
-        rows: Int[np.ndarray, " n"],
-        cols: Int[np.ndarray, " n"],
-        sight: SightLines,
-        margin_m: float,
-    ) -> Bool[np.ndarray, " n"]:
-        """Returns, for each cell, whether a frame saw `margin_m` past its centre at all heights of the band."""
-        range_m = (self.camera.min_depth_m, self.camera.max_depth_m)
-        return sight.passes(frame, rows, cols, self._drop_m, range_m, margin_m)
-
     def evidence_of_one(self, surfaces: Surfaces) -> int:
         """Returns the evidence from a single point in a cell: full evidence in an exact image, half in a noisy one."""
         return self.config.hit if surfaces.exact else self.config.hit // 2

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
-from sim.core.geometry.grid import GridFrame
 from sim.core.geometry.pose import Pose
 from sim.core.interface import TURN_RAD, Action, wrap_angle
 from stubborn.kernels.grids import bilinear, sweep
@@ -33,12 +32,8 @@ def short_term_turn(route: Route, pose: Pose, config: PlanningConfig) -> float:
     """
     turns_rad = np.arange(-5, 7) * TURN_RAD
     yaw_rad = pose.yaw_rad + turns_rad
-    distance_m = _interpolate(
-        route.distance_m,
-        route.frame,
-        pose.x_m + config.ring_m * np.cos(yaw_rad),
-        pose.y_m + config.ring_m * np.sin(yaw_rad),
-    )
+    x_m, y_m = pose.x_m + config.ring_m * np.cos(yaw_rad), pose.y_m + config.ring_m * np.sin(yaw_rad)
+    distance_m = bilinear(route.distance_m, *route.frame.origin_xy_m, route.frame.cell_m, x_m, y_m)
     clear, clearance_m = _sweep(route.goal.free, pose, yaw_rad, config.ring_m)
     distance_m[~clear] = np.inf
     missing_m = np.maximum(config.preferred_clearance_m - clearance_m, 0.0)
@@ -114,16 +109,3 @@ def _lowest_neighbour(distance_m: Float32[np.ndarray, "rows cols"], row: int, co
             if distance_m[r, c] < lowest_m and not cuts_corner:
                 best, lowest_m = (r, c), distance_m[r, c]
     return best
-
-
-def _interpolate(
-    values: Float32[np.ndarray, "rows cols"],
-    frame: GridFrame,
-    x_m: Float64[np.ndarray, " n"],
-    y_m: Float64[np.ndarray, " n"],
-) -> Float64[np.ndarray, " n"]:
-    """Returns bilinear values at points, over the finite ones of the four cells around each.
-
-    The value is infinite where the value of the point's own cell is infinite.
-    """
-    return bilinear(values, *frame.origin_xy_m, frame.cell_m, x_m, y_m)

@@ -47,14 +47,10 @@ class Untrap:
         """Forgets the last episode."""
         self._failed = 0
         self._blocked_turns = 0
-        self._active = False
+        self.active = False
+        """True while the mode chooses the actions."""
         self._side = Action.TURN_RIGHT  # the first entry turns to the other side
         self._turn_next = True
-
-    @property
-    def active(self) -> bool:
-        """True while the mode chooses the actions."""
-        return self._active
 
     def observe(self, action: Action | None, failed: bool) -> None:
         """Notes the outcome of the last action.
@@ -66,7 +62,7 @@ class Untrap:
         """
         if action is Action.MOVE_FORWARD:
             self._failed, self._blocked_turns = self._failed + 1 if failed else 0, 0
-            self._active = self._active and failed
+            self.active = self.active and failed
             if self._failed >= self.failed_forwards:
                 self._begin(_OTHER_SIDE[self._side])
         elif action is Action.TURN_LEFT or action is Action.TURN_RIGHT:
@@ -78,12 +74,12 @@ class Untrap:
 
     def _begin(self, side: Action) -> None:
         """Begins the mode with a turn to a side, if it is not active."""
-        if not self._active:
-            self._active, self._side, self._turn_next = True, side, True
+        if not self.active:
+            self.active, self._side, self._turn_next = True, side, True
 
     def next_action(self) -> Action | None:
         """Returns the action of the mode, or None while the robot is not trapped."""
-        if not self._active:
+        if not self.active:
             return None
         turn, self._turn_next = self._turn_next, not self._turn_next
         return self._side if turn else Action.MOVE_FORWARD

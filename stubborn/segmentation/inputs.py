@@ -87,20 +87,9 @@ class GeometryInput:
     """Inverse depth, validity, height above the floor and surface normal."""
 
     channels = len(geometry.CHANNELS)
-
-    def of(self, depth_m: Float32[np.ndarray, "h w"], camera: CameraModel) -> Float32[np.ndarray, "h w 6"]:
-        """Returns the geometric channels."""
-        return geometry.geometry_image(depth_m, camera)
-
-    def mirrored(self, channels: Float32[np.ndarray, "h w 6"]) -> Float32[np.ndarray, "h w 6"]:
-        """Returns the geometric channels of the mirrored scene."""
-        return geometry.mirrored(channels)
-
-    def zoomed(
-        self, channels: Float32[np.ndarray, "h w 6"], width_px: int, height_px: int, enlargement: float
-    ) -> Float32[np.ndarray, "rows cols 6"]:
-        """Returns a window with its inverse depth multiplied by its enlargement."""
-        return geometry.zoomed(channels, width_px, height_px, enlargement)
+    of = staticmethod(geometry.geometry_image)
+    mirrored = staticmethod(geometry.mirrored)
+    zoomed = staticmethod(geometry.zoomed)
 
     def normalised(
         self, channels: Float32[np.ndarray, "h w 6"], camera: CameraModel

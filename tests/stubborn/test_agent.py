@@ -140,7 +140,7 @@ def test_the_picture_of_a_map_shows_robot_target_and_legend_and_changes_nothing(
     assert picture.shape[1] > 480
     for colour in (map_painter.SEEN_OBSTACLE, map_painter.CANDIDATE, map_painter.TRAIL):
         assert (picture[:, :480] == colour).all(axis=2).any()
-    assert map_painter.draw_map(agent, whole=True).shape[0] == 720
+    assert map_painter.draw_map(agent).shape[0] == 720
     np.testing.assert_array_equal(agent.navmap.seen_obstacle, before)
 
 

@@ -179,5 +179,5 @@ class TrackRecorder:
         """Adds the true ids of the pixels of the frame to those of their tracks."""
         truth = self._env.truth_images["semantic"][STRIDE_PX // 2 :: STRIDE_PX, STRIDE_PX // 2 :: STRIDE_PX]
         assert self._agent.pose is not None
-        owner = self._tracks().shown(depth, self._agent.pose, truth.shape[1])
+        owner = self._tracks().pixels(depth, self._agent.pose, truth.shape[1]).track
         np.add.at(counts, (owner.astype(np.intp), truth.astype(np.intp)), 1)

@@ -15,7 +15,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError, EpisodeError
-from sim.core.geometry.grid import GridFrame, Window, cells_near_segment
+from sim.core.geometry.grid import GridFrame, Window
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES, MAX_STEPS, MOVES, Action, require_action
 from sim.core.invocation import command
@@ -24,11 +24,13 @@ from sim.homes.plans.motion_kernels import mark_square, mark_swept
 from sim.homes.plans.plan import Plan, read_plan
 from sim.homes.plans.sight import PlanCamera, SightConfig
 from stubborn.agent import AgentConfig
+from stubborn.exploration.explorer import planned
 from stubborn.exploration.patches import or_of_blocks
+from stubborn.exploration.semexp import head_for
 from stubborn.mapping.collision_marks import CollisionConfig, is_collision
 from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
-from stubborn.planning.planner import Goal, Planner, PlanningConfig, Route
+from stubborn.planning.planner import Planner, PlanningConfig, Route
 from stubborn.planning.steering import next_action
 from stubborn.planning.untrap import Untrap, UntrapConfig
 
@@ -310,17 +312,8 @@ class PlanEnv(gymnasium.Env[Any, Any]):
 
     def _plan_on(self, view: NavMap, layer: CollisionLayer, xy_m: tuple[float, float]) -> Route | None:
         """Returns the same on one layer of collision marks."""
-        pose = self._pose
-        free = self._planner.free_space(view, pose, layer)
-        cells = np.zeros(free.frame.shape, np.bool_)
-        index, inside = cells_near_segment(free.frame, xy_m, xy_m, self.config.goal_radius_m)
-        cells[index] = inside
-        route = self._planner.route(Goal(free, cells), pose)
-        if route is not None:
-            return route
-        cell_x_m, cell_y_m = free.frame.mesh()
-        gap_m = np.where(free.reachable, np.hypot(cell_x_m - xy_m[0], cell_y_m - xy_m[1]), np.inf)
-        return self._planner.route(Goal(free, gap_m == gap_m.min()), pose)
+        free = self._planner.free_space(view, self._pose, layer)
+        return planned(head_for(xy_m, free, self.config.goal_radius_m), self._planner, self._pose)
 
     def _planned_on(self) -> NavMap:
         """Returns the window of the map that is planned on, pooled where the configuration asks for it."""

@@ -147,7 +147,7 @@ def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str
 
 def write_picture(folder: Path, env: ObjectNavEnv, agent: Agent, trial: Trial) -> None:
     """Writes the picture of a trial."""
-    belief = map_painter.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
+    belief = map_painter.draw_map(agent) if isinstance(agent, StubbornAgent) else None
     path = folder / f"{trial.episode_id}_{file_name(trial.agent)}.png"
     save_picture(path, draw_trial(env, trial, belief))
 
