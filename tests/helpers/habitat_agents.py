@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from sim.app.bridges.habitat.conversions import HabitatSimActions
 from sim.app.bridges.habitat_client import Agent, Config
+from sim.app.bridges.stubborn_client import MOVE_FORWARD, STOP
 
 SEEN: list[dict[str, Any]] = []
 """Observations that a `Wanderer` got in this process."""
@@ -27,12 +27,12 @@ class Wanderer(Agent):
         SEEN.append(observations)
         self.steps += 1
         if self.steps > self.stop_after:
-            return {"action": HabitatSimActions.stop}
+            return {"action": STOP}
         depth = observations["depth"]
         height, width, _ = depth.shape
         if depth[height // 2, width // 3 : -width // 3].min() < self.keep or np.random.rand() < 0.1:  # noqa: NPY002
             return {"action": random.choice(["TURN_LEFT", "TURN_RIGHT"])}
-        return {"action": np.int64(HabitatSimActions.MOVE_FORWARD)}
+        return {"action": np.int64(MOVE_FORWARD)}
 
 
 class Configured(Wanderer):

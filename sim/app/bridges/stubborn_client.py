@@ -232,10 +232,7 @@ class _Client:
         if self.interface != "habitat":
             self.agent.reset(goal, seed)
             return
-        random.seed(seed)
-        np.random.seed(seed % 2**32)  # noqa: NPY002 - agents draw from it
-        if "torch" in sys.modules:
-            sys.modules["torch"].manual_seed(seed)
+        seed_generators(seed)
         self.agent.reset()
 
     def act(self, observation):
@@ -251,6 +248,14 @@ class _Client:
             place = self.agent.stop_target_xy_m()
             answer["stop_target_xy_m"] = None if place is None else [_number(number) for number in place]
         return answer
+
+
+def seed_generators(seed):
+    """Seeds the generators from which agents with Habitat's interface draw: those agents get no seed."""
+    random.seed(seed)
+    np.random.seed(seed % 2**32)  # noqa: NPY002 - agents draw from it
+    if "torch" in sys.modules:
+        sys.modules["torch"].manual_seed(seed)
 
 
 def from_habitat(action: Any) -> Any:

@@ -75,7 +75,6 @@ class MapPanel:
 
     image: Picture
     """(MAP_PX, MAP_PX, 3)."""
-    title: str
     words: str = ""
     """Text that says what the agent is doing."""
 
@@ -184,7 +183,7 @@ class FrameComposer:
             _put(frame, chase, _CHASE)
         frame[_MAPS_TOP : _MAPS_TOP + MAP_PX, self._plan_left : self._plan_left + self.plan_px[0]] = plan
         if map_panel is not None:
-            self._caption(frame, map_panel.title, (_MAP_LEFT, _MAPS_TOP, MAP_PX, MAP_PX))
+            self._caption(frame, "the agent's map", (_MAP_LEFT, _MAPS_TOP, MAP_PX, MAP_PX))
             frame[_MAPS_TOP : _MAPS_TOP + MAP_PX, _MAP_LEFT : _MAP_LEFT + MAP_PX] = map_panel.image
             for row, words in enumerate(wrapped(map_panel.words, MAP_PX, 13)[:2]):
                 write(frame, words, (_MAP_LEFT, _STATE_TOP + 12 + 15 * row), MAP_PX, 13, INK)

@@ -239,7 +239,7 @@ class VideoRecorder:
         if painter is None:
             return None
         image = painter.paint(overlay.MAP_PX)
-        return overlay.MapPanel(image=image, title="the agent's map", words=painter.words())
+        return overlay.MapPanel(image=image, words=painter.words())
 
     def _discard(self) -> None:
         if self._writer is not None:

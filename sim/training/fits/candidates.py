@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from sim.core.errors import EpisodeError, PhysicsError
-from sim.core.interface import Action, Segmenter
+from sim.core.interface import Observation, Segmenter
 from sim.core.reading import Number
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -77,16 +79,28 @@ class CandidateRecorder:
     def run(self, episode: Episode, seed: int) -> int:
         """Runs an episode to its last step; returns the number of its steps, 0 if it failed."""
         self._verifier.candidates = []
-        try:
-            observation, _ = self._env.reset(seed=seed, options={"episode": episode})
-            self._agent.reset(episode.goal, seed)
-            ended = False
-            while not ended:
-                action = self._agent.act(observation)
-                if action == Action.STOP:  # cannot happen: every candidate is rejected
-                    break
-                observation, _, terminated, truncated, _ = self._env.step(action)
-                ended = terminated or truncated
-            return self._env.scene.task.num_steps
-        except (EpisodeError, PhysicsError):
-            return 0
+        ran = run_whole(self._env, self._agent, episode, seed)
+        return self._env.scene.task.num_steps if ran else 0
+
+
+def run_whole(
+    env: ObjectNavEnv,
+    agent: StubbornAgent,
+    episode: Episode,
+    seed: int,
+    after_choice: Callable[[Observation], None] | None = None,
+) -> bool:
+    """Runs an episode with an agent that accepts nothing, to its last step; returns False if it failed."""
+    try:
+        observation, _ = env.reset(seed=seed, options={"episode": episode})
+        agent.reset(episode.goal, seed)
+        ended = False
+        while not ended:
+            action = agent.act(observation)
+            if after_choice is not None:
+                after_choice(observation)
+            observation, _, terminated, truncated, _ = env.step(action)
+            ended = terminated or truncated
+    except (EpisodeError, PhysicsError):
+        return False
+    return True

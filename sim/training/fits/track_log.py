@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Int
 
-from sim.core.errors import EpisodeError, PhysicsError
 from sim.core.files import inside, write_atomically
-from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action, Segmenter
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Observation, Segmenter
 from sim.core.reading import Count as ReadCount
 from sim.core.reading import read_npz
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.training.fits.candidates import run_whole
 from sim.training.fits.fusion import PLAUSIBLE, Sample, judge, left_out, probabilities
 from sim.training.fits.log_line import LogLine
 from stubborn.agent import StubbornAgent
@@ -154,19 +154,12 @@ class TrackRecorder:
         """Runs an episode to its last step; returns its tracks as `samples_of` reads them, None if it failed."""
         counts = np.zeros((SEEKER.tracks.most_tracks, len(MPCAT40)), np.int64)
         samples = TrackSamples()
-        try:
-            observation, _ = self._env.reset(seed=seed, options={"episode": episode})
-            self._agent.reset(episode.goal, seed)
-            ended = False
-            while not ended:
-                action = self._agent.act(observation)
-                self._count(observation["depth"], counts)
-                samples.add(self._tracks())
-                if action == Action.STOP:  # cannot happen: nothing is accepted
-                    break
-                observation, _, terminated, truncated, _ = self._env.step(action)
-                ended = terminated or truncated
-        except (EpisodeError, PhysicsError):
+
+        def look(observation: Observation) -> None:
+            self._count(observation["depth"], counts)
+            samples.add(self._tracks())
+
+        if not run_whole(self._env, self._agent, episode, seed, look):
             return None
         return logged(self._tracks(), counts, samples)
 

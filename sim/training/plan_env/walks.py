@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Protocol
 
 import cv2
 import numpy as np
@@ -30,35 +29,24 @@ SPECK_CELLS = 5
 """Unseen floor is visited only if it contains a square of this many cells on a side."""
 
 
-class WalkConfig(Protocol):
-    """The part of `sim.training.poni.potentials.SampleConfig` that a walk needs."""
-
-    @property
-    def most_steps(self) -> int:
-        """Actions of a walk."""
-        ...
-
-    @property
-    def unseen_share(self) -> float:
-        """Share of the legs of a walk that lead to a place not seen before."""
-        ...
-
-
 def explore(
-    camera: PlanCamera, start: Pose, rng: np.random.Generator, config: WalkConfig
+    camera: PlanCamera, start: Pose, rng: np.random.Generator, *, most_steps: int, unseen_share: float
 ) -> Iterator[tuple[Pose, bool]]:
-    """Yields the poses of a walk and whether the robot moved; between two of them the caller looks with the camera."""
+    """Yields the poses of a walk and whether the robot moved; between two of them the caller looks with the camera.
+
+    A walk has `most_steps` actions; `unseen_share` of its legs lead to a place not seen before.
+    """
     camera.reset()
     plan, robot = camera.plan, PlanRobot(camera.plan)
     robot.pose = start
     everywhere = reachable(plan, start)
     times: NDArray[np.float32] | None = None
     target, steps, moved = (0, 0), 0, True
-    while steps < config.most_steps:
+    while steps < most_steps:
         yield robot.pose, moved
         steps += 1
         if times is None or _done(camera, times, target, robot.pose, rng):
-            target, times = _leg(camera, everywhere, robot.pose, rng, config)
+            target, times = _leg(camera, everywhere, robot.pose, rng, unseen_share)
         turns = _best_turns(plan, times, robot.pose)
         action = Action.MOVE_FORWARD if turns == 0 else Action.TURN_LEFT if turns > 0 else Action.TURN_RIGHT
         moved = robot.move(action).moved_m > 0.0
@@ -99,7 +87,7 @@ def search(camera: PlanCamera, goal: str, start: Pose, rng: np.random.Generator)
             actions.append(Action.STOP)
             break
         seen = camera.seen_floor | near
-        if times is None or (not is_found and _is_over(seen, plan, times, target, robot.pose)):
+        if times is None or (not is_found and (seen[target] or float(times[_at(plan, robot.pose)]) < REACHED_S)):
             target = _nearest_unseen(everywhere, everywhere & ~seen, plan, robot.pose)
             times = _times_to(plan, _only(everywhere, target), everywhere, robot.pose)
         turns = _best_turns(plan, times, robot.pose)
@@ -110,13 +98,6 @@ def search(camera: PlanCamera, goal: str, start: Pose, rng: np.random.Generator)
             times = _times_to(plan, _only(everywhere, target), everywhere, robot.pose)
             is_found = False  # it sees the goal again from where it can be reached
     return poses, actions
-
-
-def _is_over(
-    seen: Bool[np.ndarray, "rows cols"], plan: Plan, times: NDArray[np.float32], target: tuple[int, int], pose: Pose
-) -> bool:
-    """Returns whether the end of a leg was seen or is reached."""
-    return bool(seen[target]) or float(times[_at(plan, pose)]) < REACHED_S
 
 
 def _nearest_unseen(
@@ -169,11 +150,11 @@ def _leg(
     everywhere: Bool[np.ndarray, "rows cols"],
     pose: Pose,
     rng: np.random.Generator,
-    config: WalkConfig,
+    unseen_share: float,
 ) -> tuple[tuple[int, int], NDArray[np.float32]]:
     """Returns the end of the next leg, a cell, and the travel times to it."""
     unseen = everywhere & ~camera.seen_floor
-    eligible = unseen if rng.random() < config.unseen_share and np.count_nonzero(unseen) > 100 else everywhere
+    eligible = unseen if rng.random() < unseen_share and np.count_nonzero(unseen) > 100 else everywhere
     cell = _any_cell(eligible, rng)
     return cell, _times_to(camera.plan, _only(everywhere, cell), everywhere, pose)
 

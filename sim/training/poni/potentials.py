@@ -101,14 +101,9 @@ class Sample:
     potentials: Potentials
 
 
-def plan_seed(name: str, seed: int) -> list[int]:
-    """Returns the seed of a plan's samples: independent of other plans, and the same in every process."""
-    return [seed, zlib.crc32(name.encode())]
-
-
 def samples_of(plan: Plan, config: SampleConfig, seed: int) -> Iterator[Sample]:
     """Yields the samples of a plan; the iterator is empty if no goal can be reached."""
-    rng = np.random.default_rng(plan_seed(plan.name, seed))
+    rng = np.random.default_rng([seed, zlib.crc32(plan.name.encode())])  # independent of other plans
     truth, camera = Truth(plan, config), PlanCamera(plan)
     planner = Planner(PlanningConfig(), visited_ground)
     for _ in range(config.walks):
@@ -120,7 +115,8 @@ def samples_of(plan: Plan, config: SampleConfig, seed: int) -> Iterator[Sample]:
         navmap = NavMap.empty(GridFrame.around_start(config.map_cells, AgentConfig.cell_m))
         everywhere = reachable(plan, start)
         before = Pose(0.0, 0.0, 0.0)
-        for step, (world, moved) in enumerate(explore(camera, start, rng, config)):
+        walk = explore(camera, start, rng, most_steps=config.most_steps, unseen_share=config.unseen_share)
+        for step, (world, moved) in enumerate(walk):
             pose = world.relative_to(start)
             if moved:
                 mark_visited(navmap, before, pose, plan.radius_m, CollisionConfig())

@@ -101,11 +101,11 @@ class Sampler:
             if instance is not None:
                 shown = random_pixel(shrink(_instances(view), self.block_px) == instance, rng)
             window = random_window(height, width, self.window_px, self.whole_share, rng, shown=shown)
-            rgb, semantic = window.colour(rgb), window.labels(semantic)
+            rgb, semantic = window.colour(rgb), window.nearest(semantic)
             cut = channels[window.cut]
             zoom = window.width_px / cut.shape[1]
             enlargement = zoom * (self.used_block_px or self.block_px) / self.block_px
-            weights = None if weights is None else window.weights(weights)
+            weights = None if weights is None else window.nearest(weights)
             channels = second.zoomed(cut, window.width_px, window.height_px, enlargement)
         if augmentation.mirror and rng.random() < 0.5:
             rgb, channels, semantic = _mirrored(rgb), second.mirrored(channels), _mirrored(semantic)
@@ -180,17 +180,9 @@ class Window:
             np.uint8, copy=False
         )
 
-    def weights(self, weights: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "rows cols"]:
-        """Returns the window of an image of weights; each pixel takes one pixel of the view."""
-        return np.asarray(
-            cv2.resize(weights[self.cut], (self.width_px, self.height_px), interpolation=cv2.INTER_NEAREST)
-        )
-
-    def labels(self, semantic: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "rows cols"]:
-        """Returns the window of an image of labels; each pixel takes one pixel of the view."""
-        return cv2.resize(semantic[self.cut], (self.width_px, self.height_px), interpolation=cv2.INTER_NEAREST).astype(
-            np.uint8, copy=False
-        )
+    def nearest(self, image: Shaped[np.ndarray, "h w"]) -> Shaped[np.ndarray, "rows cols"]:
+        """Returns the window of an image of labels or weights; each pixel takes one pixel of the view."""
+        return np.asarray(cv2.resize(image[self.cut], (self.width_px, self.height_px), interpolation=cv2.INTER_NEAREST))
 
 
 def random_pixel(mask: Bool[np.ndarray, "h w"], rng: np.random.Generator) -> tuple[int, int] | None:

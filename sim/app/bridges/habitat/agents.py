@@ -11,19 +11,17 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import inspect
-import random
 import sys
 import typing
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from sim.app.bridges.habitat.config import keeping_looks, make_config, with_entries_of
 from sim.app.bridges.habitat.conversions import Conversion, to_action
 from sim.app.bridges.habitat_client import OF_THE_RUN, Config, called, takes_config
 from sim.app.bridges.process_command import BridgeConfig
+from sim.app.bridges.stubborn_client import seed_generators
 from sim.core.errors import ConfigError
 from sim.core.interface import Action, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
 
@@ -56,10 +54,7 @@ class HabitatAgent:
         """
         self._conversion.goal_number(goal)
         self._seed = seed
-        random.seed(seed)
-        np.random.seed(seed % 2**32)  # noqa: NPY002 - agents draw from it
-        if "torch" in sys.modules:
-            sys.modules["torch"].manual_seed(seed)
+        seed_generators(seed)
         self.agent.reset()
 
     def next_goal(self, goal: str) -> None:
@@ -194,15 +189,10 @@ def _config_of(make: Callable[..., object], arguments: list[inspect.Parameter]) 
         plain = kind in _PLAIN and isinstance(shown, (kind, type(None)))
         fields.append((argument.name, kind | None if plain else Json, shown))
     fields += BRIDGE_FIELDS
-    checked = {"__post_init__": _require_known_values}
+    checked = {"__post_init__": _goals}  # refuses values that are not allowed
     return dataclasses.make_dataclass(
         "HabitatAgentConfig", fields, bases=(BridgeConfig,), frozen=True, kw_only=True, namespace=checked
     )()
-
-
-def _require_known_values(config: BridgeConfig) -> None:
-    """Raises ConfigError if a field of the bridge has a value that is not allowed."""
-    _goals(config)
 
 
 def _hints(make: Callable[..., object]) -> dict[str, object]:

@@ -40,7 +40,6 @@ def make_config(
     robot: RobotModel | None = None,
     success: SuccessRule | None = None,
     max_steps: int = MAX_STEPS,
-    split: str = "val",
     looks: bool = False,
 ) -> Config:
     """Returns the configuration of a task, in the old layout and, under `habitat`, in the new one.
@@ -48,7 +47,6 @@ def make_config(
     Args:
         camera, robot, success: models of the task; None: the defaults.
         max_steps: largest number of actions of an episode.
-        split: name of the split.
         looks: whether the actions LOOK_UP and LOOK_DOWN are possible.
     """
     camera, robot = camera or CameraModel(), robot or RobotModel()
@@ -70,7 +68,7 @@ def make_config(
     steps = {"max_episode_steps": max_steps, "max_episode_seconds": 10_000_000}
     order = {"cycle": True, "shuffle": False, "group_by_scene": False, "max_scene_repeat_steps": -1}
     order |= {"max_scene_repeat_episodes": -1, "num_episode_sample": -1, "step_repetition_range": 0.2}
-    data = {"type": "ObjectNav-v1", "split": split, "data_path": "", "scenes_dir": "", "content_scenes": ["*"]}
+    data = {"type": "ObjectNav-v1", "split": "val", "data_path": "", "scenes_dir": "", "content_scenes": ["*"]}
     engine = {"gpu_device_id": 0, "gpu_gpu": False, "allow_sliding": False, "enable_physics": True}
     old = {
         "SEED": 100,

@@ -23,7 +23,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from sim.app.bridges.habitat_client import HABITAT_ACTIONS, HabitatActions
+from sim.app.bridges.habitat_client import HABITAT_ACTIONS
 from sim.app.bridges.stubborn_client import Observation as _Observation
 from sim.app.bridges.stubborn_client import from_habitat
 from sim.core.errors import AgentError, ConfigError, did_you_mean
@@ -40,10 +40,6 @@ end 0.05 degrees too far, so that without rounding such an agent oscillates betw
 
 class Observations(_Observation):
     """The observation of one step: a dict of arrays by the name of the sensor."""
-
-
-HabitatSimActions = HabitatActions()
-"""`HabitatSimActions.MOVE_FORWARD` or `.move_forward` is 1, as in Habitat."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,13 +107,9 @@ def to_action(chosen: object) -> Action:
         AgentError: it is not an action of Habitat's.
     """
     try:
-        inner = from_habitat(chosen)
-        number = HABITAT_ACTIONS.get(inner.lower()) if isinstance(inner, str) else operator.index(inner)
+        return Action(operator.index(from_habitat(chosen)))
     except Exception:  # that of the user's class too
-        number = None
-    if number is None or number not in HABITAT_ACTIONS.values():
         names = ", ".join(f"{number} {name}" for name, number in HABITAT_ACTIONS.items())
         raise AgentError(
             f'Unknown action {reprlib.repr(chosen)}. An action is one of {names}, or a dict {{"action": one of these}}.'
-        )
-    return Action(number)
+        ) from None

@@ -80,6 +80,8 @@ class DatasetWriter:
             first_row: rows of all episodes before it.
             frames: of the episode.
         """
+        import pyarrow as pa
+
         video = None
         rows: dict[str, list[Any]] = {name: [] for name in (STATE, GOAL, ACTION, *SCALARS)}
         thumbnails = []
@@ -105,7 +107,11 @@ class DatasetWriter:
         video.finish()
         count = len(thumbnails)
         columns = {name: np.array(values, SCALARS.get(name, "float32")) for name, values in rows.items()}
-        self._write_table(self._file(DATA, number), columns)
+        arrays = {}
+        for name, column in columns.items():
+            flat = pa.array(column.reshape(-1))
+            arrays[name] = flat if column.ndim == 1 else pa.FixedSizeListArray.from_arrays(flat, column.shape[1])
+        _write_parquet(self._file(DATA, number), pa.table(arrays))
         stats = {name: stats_of(column) for name, column in columns.items()} | {IMAGE: image_stats(thumbnails)}
         place = {"chunk_index": number // CHUNK, "file_index": number % CHUNK}
         entry: dict[str, Any] = {"episode_index": number, "tasks": [task], "length": count}
@@ -115,7 +121,7 @@ class DatasetWriter:
         entry |= {f"videos/{IMAGE}/from_timestamp": 0.0, f"videos/{IMAGE}/to_timestamp": count / FPS}
         entry |= {f"stats/{name}/{key}": value for name, of in stats.items() for key, value in of.items()}
         entry |= {f"meta/episodes/{name}": value for name, value in place.items()}
-        self._write_rows(self._file(EPISODES, number), [entry])
+        _write_parquet(self._file(EPISODES, number), pa.Table.from_pylist([entry]))
         return count
 
     def finish(self, count: int, tasks: Sequence[str], picture: tuple[int, int], robot: str) -> None:
@@ -162,20 +168,6 @@ class DatasetWriter:
         import pyarrow.parquet as parquet
 
         return parquet.read_table(self._file(EPISODES, number)).to_pylist()[0]
-
-    def _write_table(self, file: Path, columns: Mapping[str, NDArray]) -> None:
-        import pyarrow as pa
-
-        arrays = {}
-        for name, column in columns.items():
-            flat = pa.array(column.reshape(-1))
-            arrays[name] = flat if column.ndim == 1 else pa.FixedSizeListArray.from_arrays(flat, column.shape[1])
-        _write_parquet(file, pa.table(arrays))
-
-    def _write_rows(self, file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-        import pyarrow as pa
-
-        _write_parquet(file, pa.Table.from_pylist(rows))
 
     def _write_tasks(self, tasks: Sequence[str]) -> None:
         """Writes the texts as the index of a table of pandas, which LeRobot reads."""

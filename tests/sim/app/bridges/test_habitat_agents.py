@@ -16,7 +16,8 @@ import torch
 
 from sim.app.bridges.habitat import stand_in
 from sim.app.bridges.habitat.agents import HabitatAgent, spec_of
-from sim.app.bridges.habitat.conversions import Conversion, HabitatSimActions, to_action
+from sim.app.bridges.habitat.conversions import Conversion, to_action
+from sim.app.bridges.habitat_client import HabitatActions
 from sim.app.commands.run import entry
 from sim.app.composition.agents import find_agent
 from sim.app.composition.record import code_of
@@ -114,7 +115,7 @@ def test_depth_may_stay_in_metres_and_goals_may_have_the_numbers_of_hm3d() -> No
     [
         1, np.int64(1), np.array([1]), np.array(1), "move_forward", "MOVE_FORWARD", np.str_("MOVE_FORWARD"),
         {"action": 1}, {"action": "move_forward", "action_args": {}}, {"action": {"action": np.int32(1)}},
-        {"action": ("move_forward",)}, HabitatSimActions.MOVE_FORWARD, HabitatSimActions["move_forward"],
+        {"action": ("move_forward",)}, HabitatActions().MOVE_FORWARD, HabitatActions()["move_forward"],
     ],
 )  # fmt: skip
 def test_an_action_is_understood_in_all_of_habitats_forms(chosen: Any) -> None:

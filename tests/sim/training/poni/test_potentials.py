@@ -53,7 +53,7 @@ def samples(plan: Plan) -> list[Sample]:
 
 def test_a_walk_stays_on_free_ground_and_sees_the_house(plan: Plan):
     camera, start = PlanCamera(plan), Pose(-3.0, 1.0, 3.0)
-    for pose, _ in explore(camera, start, np.random.default_rng(0), SampleConfig(most_steps=120)):
+    for pose, _ in explore(camera, start, np.random.default_rng(0), most_steps=120, unseen_share=0.8):
         row, col = plan.frame.cell(pose.x_m, pose.y_m)
         assert plan.slack_m[row, col] > -0.05
         camera.look(pose, None, _empty(), pose.relative_to(start), 0)

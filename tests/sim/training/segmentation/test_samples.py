@@ -76,7 +76,7 @@ def test_windows_have_one_size_and_all_positions_and_scales() -> None:
     spans, corners = [], []
     for seed in range(300):
         window = random_window(60, 80, 40, 0.0, np.random.default_rng(seed))
-        rgb, semantic = window.colour(np.stack([row, row, row], axis=2)), window.labels(col)
+        rgb, semantic = window.colour(np.stack([row, row, row], axis=2)), window.nearest(col)
         cut = depth[window.cut]
         nearer = INPUTS["depth"].zoomed(cut, window.width_px, window.height_px, 40 / cut.shape[1])
         assert rgb.shape == (30, 40, 3)
@@ -97,7 +97,7 @@ def test_windows_have_one_size_and_all_positions_and_scales() -> None:
 
 def test_a_share_of_the_windows_is_the_whole_view() -> None:
     col = np.mgrid[0:60, 0:80].astype(np.uint8)[1]
-    windows = [random_window(60, 80, 40, 0.6, np.random.default_rng(seed)).labels(col) for seed in range(300)]
+    windows = [random_window(60, 80, 40, 0.6, np.random.default_rng(seed)).nearest(col) for seed in range(300)]
     whole = np.mean([window[0, 0] == 0 and window[0, -1] >= 78 for window in windows])
     assert whole == pytest.approx(0.6, abs=0.09)
 

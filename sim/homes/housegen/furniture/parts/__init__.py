@@ -1,13 +1,6 @@
 """Parts that several families of furniture share: fronts, cases, plumbing, textiles and looks."""
 
-from sim.homes.housegen.furniture.parts.cases import (
-    case,
-    open_case,
-    round_top,
-    slab,
-    worktop,
-    worktop_fittings,
-)
+from sim.homes.housegen.furniture.parts.cases import case, open_case, round_top, slab, worktop, worktop_fittings
 from sim.homes.housegen.furniture.parts.fronts import (
     FRONT_M,
     GAP_M,
@@ -16,39 +9,13 @@ from sim.homes.housegen.furniture.parts.fronts import (
     plain_doors,
     plain_drawers,
 )
-from sim.homes.housegen.furniture.parts.looks import (
-    darker,
-    tinted_glass,
-    wood_look,
-)
+from sim.homes.housegen.furniture.parts.looks import darker, tinted_glass, wood_look
 from sim.homes.housegen.furniture.parts.plumbing import basin, mixer_tap
 from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, footprint, on_side
-from sim.homes.housegen.furniture.parts.textiles import (
-    duvet,
-    throw_cushions,
-)
+from sim.homes.housegen.furniture.parts.textiles import duvet, throw_cushions
 
 __all__ = [
-    "BOTH_SIDES",
-    "FRONT_M",
-    "GAP_M",
-    "SHADOW_M",
-    "PlainHandleKind",
-    "basin",
-    "case",
-    "darker",
-    "duvet",
-    "footprint",
-    "mixer_tap",
-    "on_side",
-    "open_case",
-    "plain_doors",
-    "plain_drawers",
-    "round_top",
-    "slab",
-    "throw_cushions",
-    "tinted_glass",
-    "wood_look",
-    "worktop",
-    "worktop_fittings",
-]
+    "BOTH_SIDES", "FRONT_M", "GAP_M", "SHADOW_M", "PlainHandleKind", "basin", "case", "darker", "duvet", "footprint",
+    "mixer_tap", "on_side", "open_case", "plain_doors", "plain_drawers", "round_top", "slab", "throw_cushions",
+    "tinted_glass", "wood_look", "worktop", "worktop_fittings",
+]  # fmt: skip
