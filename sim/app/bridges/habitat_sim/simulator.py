@@ -158,15 +158,15 @@ class Simulator:
         """Takes another configuration; the house is loaded only if it is another one."""
         self._configure(config)
 
-    def step(self, action: Any, dt: float = 1.0 / 60.0) -> dict[str, Any]:
+    def step(self, action: Any, dt: float = 1.0 / 60.0) -> dict[Any, Any]:
         """Performs an action from rest to rest; returns what the cameras then see, and `collided`.
 
         Args:
-            action: a key of the agent's `action_space`.
+            action: a key of the agent's `action_space`; {0: KEY} gives {0: observations}.
             dt: exists for scripts that give it; an action takes the time that the robot needs.
         """
         if isinstance(action, Mapping):
-            (action,) = action.values()
+            return {agent: self.step(key) for agent, key in action.items()}
         space = self.agents[0].agent_config.action_space
         if action not in space:
             raise ConfigError(f"Unknown action {action!r}. Available: {', '.join(map(repr, space))}.")
@@ -217,12 +217,15 @@ class Simulator:
             noise.begin(rng.spawn(1)[0], self._gloss)
         return drive.begin(rng.spawn(1)[0], self._gloss)
 
-    def get_sensor_observations(self, agent_ids: int | Sequence[int] = 0) -> dict[str, Any]:
-        """Returns what the cameras see: uint8 (h, w, 4), metres float32 (h, w), object indices uint32 (h, w)."""
+    def get_sensor_observations(self, agent_ids: int | Sequence[int] = 0) -> dict[Any, Any]:
+        """Returns what the cameras see: uint8 (h, w, 4), metres float32 (h, w), object indices uint32 (h, w).
+
+        With a list of agents, it is the value of each of them in a dict.
+        """
         if self._fresh:
             self.settle()
         self._collided = False
-        return self._render()
+        return {agent: self._render() for agent in agent_ids} if isinstance(agent_ids, Sequence) else self._render()
 
     def _render(self) -> dict[str, Any]:
         """Returns the image of each camera."""

@@ -128,6 +128,11 @@ def test_looking_up_tilts_all_cameras_until_the_next_reset(empty: Simulator) -> 
     assert empty.reset()["depth"][24, 32] == pytest.approx(level, abs=0.01)
 
 
+def test_a_list_of_agents_gives_the_observations_of_each(empty: Simulator) -> None:
+    assert empty.step({0: 1})[0]["collided"] is False
+    assert empty.get_sensor_observations([0])[0].keys() == empty.get_sensor_observations(0).keys()
+
+
 def test_a_reset_brings_the_agent_back_to_its_initial_state(empty: Simulator) -> None:
     put(empty, 1.0, 0.5, initial=True)
     put(empty, -1.0, 0.5)
