@@ -169,6 +169,9 @@ def test_goals_in_words_are_seen_as_clip_objectgoal_and_judged(tmp_path: Path) -
         env.reset()
     with pytest.raises(ConfigError, match="no episodes with a single goal in words"):
         habitat.Env(stubborn_habitat.get_config("chains-val"))
+    others = ["habitat.dataset.content_scenes=['val_00','attic']"]
+    with pytest.raises(ConfigError, match="has no house 'attic'"):
+        habitat.Env(stubborn_habitat.get_config("words-seen", others))
     with pytest.raises(ConfigError, match="lists no view points"):
         stubborn_habitat.get_config("words-seen", rule="view_points")
 

@@ -353,7 +353,10 @@ def _read_yaml(path: str) -> dict:
     """Returns the content of a file, read with PyYAML of the agent's environment."""
     yaml = importlib.import_module("yaml")
     with open(path) as file:
-        return yaml.safe_load(file) or {}
+        content = yaml.safe_load(file) or {}
+    if not isinstance(content, dict):
+        raise ValueError(f"The configuration file '{path}' must hold a mapping, not a {type(content).__name__}.")
+    return content
 
 
 def _config_of_the_run() -> Config:

@@ -116,11 +116,12 @@ def _dataset(split_name: str, numbering: str) -> type[ObjectNavDatasetV1]:
             split, goals = (shipped_split if shipped else load_split)(split_name), CATEGORIES[numbering]
             folder = assets_dir() / split_name if shipped else Path(split_name)
             chosen = [str(house) for house in config.content_scenes]
+            houses = split.houses if ALL in chosen else chosen
             if read_index(split_name).in_words:
-                self.episodes = _in_words(split, split.houses if ALL in chosen else chosen)
+                self.episodes = _in_words(split, houses)
                 return
             own_ids = []
-            for house in split.houses if ALL in chosen else chosen:
+            for house in houses:
                 file = folder / "content" / f"{house}.json.gz"
                 if not file.is_file() and ALL in chosen:
                     continue
@@ -162,8 +163,11 @@ def _in_words(split: Split, houses: Sequence[str]) -> list[ObjectGoalNavEpisode]
     """Returns the episodes with a single goal in words; the words are their category, and no view points are listed.
 
     Raises:
-        ConfigError: there is none in these houses.
+        ConfigError: there is none in these houses, or the split has no such house.
     """
+    for house in houses:
+        if house not in split.houses:
+            raise ConfigError(f"Split '{split.name}' has no house '{house}'.")
     episodes = [
         ObjectGoalNavEpisode(
             episode_id=str(place),

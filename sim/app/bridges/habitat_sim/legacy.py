@@ -199,6 +199,8 @@ class Benchmark:
     def evaluate(self, agent: Any, num_episodes: int | None = None) -> dict[str, float]:
         """Returns the means of the measures that are numbers."""
         count = len(self._env.episodes) if num_episodes is None else num_episodes
+        if count < 1:
+            raise ConfigError(f"num_episodes must be at least 1, not {count}.")
         rows = []
         for _ in range(count):
             observations = self._env.reset()

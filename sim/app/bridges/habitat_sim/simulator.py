@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.bridges.habitat_sim.agent import Agent, AgentState
-from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Vector3, quat_from_coeffs
+from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Rad, Vector3, quat_from_coeffs
 from sim.app.bridges.habitat_sim.options import current_options
 from sim.app.bridges.habitat_sim.pathfinder import GreedyGeodesicFollower, PathFinder
 from sim.app.bridges.habitat_sim.scenes import find_house
 from sim.app.bridges.habitat_sim.semantics import SemanticScene, semantic_scene
 from sim.app.bridges.habitat_sim.settings import (
     ActionSpec,
+    ActuationSpec,
     AgentConfiguration,
     CameraSensorSpec,
     Configuration,
@@ -178,8 +179,8 @@ class Simulator:
     def act(self, spec: ActionSpec) -> None:
         """Performs an action without looking."""
         if spec.name in ("look_up", "look_down"):
-            amount = spec.actuation.amount if spec.actuation else 0.0
-            self._look(amount if spec.name == "look_up" else -amount)
+            by = spec.actuation or ActuationSpec(0.0)
+            self._look(by.amount if spec.name == "look_up" else -by.amount, by.constraint)
             return
         if spec.name not in _ACTIONS:
             raise ConfigError(f"Unknown action '{spec.name}'. Available: {', '.join(_ACTIONS)}, look_up, look_down.")
@@ -187,10 +188,15 @@ class Simulator:
         motion = self.world.move(_ACTIONS[spec.name])
         self._collided = motion.collided
 
-    def _look(self, degrees: float) -> None:
+    def _look(self, degrees: float, most: float | None) -> None:
+        """Tilts the cameras, up to `most` degrees above and below the horizon; None: as far as asked."""
         self._collided = False
         for sensor in self.agents[0].sensors.values():
-            sensor.node.rotation = sensor.node.rotation * Quaternion.rotation(Deg(degrees), Vector3.x_axis())
+            rotation, by = sensor.node.rotation, degrees
+            if most is not None:
+                tilt = 2.0 * math.degrees(math.atan2(rotation.vector[0], rotation.scalar))
+                by = min(max(degrees, -most - tilt), most - tilt)
+            sensor.node.rotation = rotation * Quaternion.rotation(Deg(by), Vector3.x_axis())
 
     def settle(self) -> None:
         """Puts the robot where the agent was put, in physics, and begins the episode after a reset."""
@@ -458,10 +464,10 @@ def _cameras(specs: Sequence[SensorSpec]) -> dict[CameraModel, list[SensorSpec]]
                 "stubborn_habitat.configure(noise='realsense') has noise of its own."
             )
         height_px, width_px = (int(side) for side in np.asarray(spec.resolution).tolist())
-        hfov_deg = float(np.asarray(spec.hfov).item())
+        hfov = spec.hfov if isinstance(spec.hfov, Rad) else Deg(np.asarray(spec.hfov).item())
         up_m = max(0.01, float(np.asarray(spec.position)[1]))
         model = CameraModel(
-            width_px=width_px, height_px=height_px, hfov_rad=math.radians(hfov_deg), height_m=up_m, min_depth_m=0.0,
+            width_px=width_px, height_px=height_px, hfov_rad=float(Rad(hfov)), height_m=up_m, min_depth_m=0.0,
             max_depth_m=FAR_M,
         )  # fmt: skip
         groups[model].append(spec)

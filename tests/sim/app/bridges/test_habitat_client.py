@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from sim.app.bridges.habitat.stand_in import _FINDER
-from sim.app.bridges.habitat_client import HABITAT_MODULES
+from sim.app.bridges.habitat_client import HABITAT_MODULES, _read_yaml
 from sim.app.bridges.process import ProcessAgent
 from sim.app.bridges.process_command import ProcessConfig
 from sim.app.commands.agent_client import client_file
@@ -142,6 +142,12 @@ def test_what_cannot_run_ends_with_one_line(folder: Path, words: str, script: st
     (folder / "own.py").write_text(script)
     with pytest.raises(ConfigError, match=reason):
         start(words)
+
+
+def test_a_configuration_file_without_a_mapping_is_named(tmp_path: Path) -> None:
+    (tmp_path / "task.yaml").write_text("- ENVIRONMENT")
+    with pytest.raises(ValueError, match=r"task\.yaml' must hold a mapping, not a list\.$"):
+        _read_yaml(str(tmp_path / "task.yaml"))
 
 
 @pytest.mark.usefixtures("folder")

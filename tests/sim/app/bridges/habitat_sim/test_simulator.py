@@ -2,6 +2,7 @@ import http.server
 import math
 import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 from sim.app.bridges.habitat_sim.agent import AgentState
-from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Vector3, quat_from_coeffs, quat_rotate_vector
+from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Rad, Vector3, quat_from_coeffs, quat_rotate_vector
 from sim.app.bridges.habitat_sim.options import configure
 from sim.app.bridges.habitat_sim.pathfinder import MARGIN_M, GreedyFollowerError, MultiGoalShortestPath, ShortestPath
 from sim.app.bridges.habitat_sim.semantics import semantic_scene
@@ -22,7 +23,7 @@ from sim.app.bridges.habitat_sim.settings import (
     SensorType,
     SimulatorConfiguration,
 )
-from sim.app.bridges.habitat_sim.simulator import Simulator
+from sim.app.bridges.habitat_sim.simulator import Simulator, _cameras
 from sim.app.commands.habitat.dataset import require_format
 from sim.app.services.frames import Frame
 from sim.core.errors import ConfigError, EpisodeError, HouseError
@@ -126,6 +127,19 @@ def test_looking_up_tilts_all_cameras_until_the_next_reset(empty: Simulator) -> 
     assert empty.step(4)["depth"][24, 32] == pytest.approx(level / math.cos(math.radians(30.0)), abs=0.03)
     assert empty.agents[0].state.sensor_states["depth"].rotation.x == pytest.approx(math.sin(math.radians(15.0)))
     assert empty.reset()["depth"][24, 32] == pytest.approx(level, abs=0.01)
+
+
+def test_a_field_of_view_may_be_given_in_radians() -> None:
+    specs = [replace(camera("depth", SensorType.DEPTH), hfov=hfov) for hfov in (90.0, Deg(90.0), Rad(math.pi / 2))]
+    assert [model.hfov_rad for model in _cameras(specs)] == [pytest.approx(math.pi / 2)]
+
+
+def test_a_constraint_limits_the_tilt(empty: Simulator) -> None:
+    empty.agents[0].agent_config.action_space[4].actuation.constraint = 40.0
+    for tilt_deg in (30.0, 40.0, 40.0):
+        empty.step(4)
+        tilt = empty.agents[0].state.sensor_states["depth"].rotation.x
+        assert tilt == pytest.approx(math.sin(math.radians(tilt_deg / 2)))
 
 
 def test_a_list_of_agents_gives_the_observations_of_each(empty: Simulator) -> None:
