@@ -198,10 +198,7 @@ class TargetSeeker:
 
     def candidates(self, navmap: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map with candidates that are not set aside."""
-        return self._candidates(navmap, self.parts(navmap))
-
-    def _candidates(self, navmap: NavMap, parts: CandidateParts) -> Bool[np.ndarray, "rows cols"]:
-        return self._on_whole_map(navmap, parts.mask) & ~navmap.set_aside
+        return self._on_whole_map(navmap, self.parts(navmap).mask) & ~navmap.set_aside
 
     def _acceptable(self, navmap: NavMap, parts: CandidateParts) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map with candidates that the verifier would accept now.
@@ -236,7 +233,7 @@ class TargetSeeker:
         if parts is None or not (parts.mask & ~navmap.set_aside[whole.index]).any():
             self._far, self._pursued = False, None
             return None
-        candidates = self._candidates(navmap, parts)
+        candidates = self._on_whole_map(navmap, parts.mask) & ~navmap.set_aside
         acceptable = self._acceptable(navmap, parts) if self.verifier.may_refuse else None
         for choice in self._choices(candidates, acceptable, window, whole, step):
             approach = approach_on(

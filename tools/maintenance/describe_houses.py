@@ -172,17 +172,15 @@ def main(args: Args) -> int:
     if not names:
         raise ConfigError(f"--root '{root}' has no split; one of {', '.join(SPLITS)} is a folder in it.")
     splits = {name: _load(root / name) for name in names}
-    facts = {name: describe_all(root / name, args.workers) for name in names}
+    facts = {
+        name: list(ordered_map(functools.partial(_describe, root / name), splits[name].houses, workers=args.workers))
+        for name in names
+    }
     page = "\n".join([HEAD, _summary_table(splits, facts), VERSIONS, _version_table(splits)])
     table = args.out.with_name(TABLE_FILE)
     write_together({args.out: page, table: _csv(root, splits, facts)})
     print(f"{args.out}, {table}: {', '.join(names)}")
     return 0
-
-
-def describe_all(folder: Path, workers: int) -> list[HouseFacts]:
-    """Returns the facts of every house of a split."""
-    return list(ordered_map(functools.partial(_describe, folder), _load(folder).houses, workers=workers))
 
 
 def _describe(folder: Path, house: str) -> HouseFacts:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -51,19 +50,17 @@ HUMAN = AgentSpec(
 """The declaration of a person, who sees all images, the true segmentation included."""
 
 
-def setup_of_person(setup: Setup, out: Path | None, *, with_agent: bool = False) -> Setup:
+def setup_of_person(setup: Setup, *, with_agent: bool) -> Setup:
     """Returns the setup of a person that has the world of an agent's setup.
 
     Args:
         setup: the setup of the agent that could have driven.
-        out: folder of the record.
         with_agent: whether the agent drove a part of the episode, so that the results are not those of a person alone.
     """
     of_person = RunOptions(
         agent=f"{HUMAN_NAME}+agent" if with_agent else HUMAN_NAME,
         semantics="gt",
         episodes=1,
-        out=out,
         record=True,
         **_of_world(setup.options),
     )

@@ -52,7 +52,7 @@ class DrivenRuns:
             ConfigError: the folder is not writable.
         """
         with_agent = person_steps < result.num_steps
-        person = setup_of_person(setup, None, with_agent=with_agent)
+        person = setup_of_person(setup, with_agent=with_agent)
         run = self._run
         if run is None or person.options != self._options or episode.episode_id in self._done:
             run, done = self._new_run(), set[str]()

@@ -76,8 +76,8 @@ def plan_of(file: Path) -> str | None:
     return checksum if isinstance(checksum, str) else None
 
 
-def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, about: dict[str, object]) -> int:
-    """Writes the samples of a plan, atomically, and returns their number.
+def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, about: dict[str, object]) -> None:
+    """Writes the samples of a plan, atomically.
 
     Args:
         file: the npz file.
@@ -87,7 +87,6 @@ def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, a
     """
     rows: dict[str, list[NDArray]] = {name: [] for name in (*_OF_SAMPLES, *_OF_GOAL_CELLS, *_OF_FRONTIERS)}
     ends = {"goal_start": [0], "start": [0]}
-    number = 0
     for sample in samples:
         patch, potentials = sample.patch, sample.potentials
         layers = np.stack([patch.obstacle, patch.seen, patch.trail]).reshape(3, -1)
@@ -108,14 +107,12 @@ def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, a
             rows[name].append(value)
         ends["goal_start"].append(ends["goal_start"][-1] + goal_cell.size)
         ends["start"].append(ends["start"][-1] + potentials.rows.size)
-        number += 1
     arrays: dict[str, object] = {name: np.concatenate(parts) for name, parts in rows.items() if parts}
     arrays |= {name: np.array(values, np.int64) for name, values in ends.items()}
     header = json.dumps({"config": asdict(config), "about": about})
     content = io.BytesIO()
     np.savez_compressed(content, header=np.array(header), **arrays)  # pyright: ignore[reportArgumentType] - arrays only
     write_atomically(file, content.getvalue())
-    return number
 
 
 class SampleSet:

@@ -126,14 +126,12 @@ def keep_from_fire(layout: RoomLayout, hearth: Placement) -> None:
     layout.reserve(hearth, [hearth.rect.grown(FROM_FIRE_M + 0.03)])
 
 
-def place_beside(
-    layout: RoomLayout, host: Placement, item: Item, towards: float, gap_m: float = 0.05
-) -> Placement | None:
-    """Places an item next to another one at the same wall: `towards` is +1 or -1 along the side."""
+def place_beside(layout: RoomLayout, host: Placement, item: Item, towards: float) -> Placement | None:
+    """Places an item 5 cm next to another one at the same wall: `towards` is +1 or -1 along the side."""
     if host.side is None:
         return None
     lo, hi = host.rect.span(host.side)
-    reach_m = item.size_m[1] / 2 + gap_m
+    reach_m = item.size_m[1] / 2 + 0.05
     placement = layout.walls.placement(item, host.side, hi + reach_m if towards > 0 else lo - reach_m)
     return placement if layout.try_put(placement) else None
 

@@ -128,7 +128,7 @@ def test_the_area_potential_is_the_share_of_the_parts_that_a_frontier_borders_on
 
 def test_samples_are_read_back_as_they_were_written(tmp_path: Path, samples: list[Sample]):
     files = [tmp_path / "one.npz", tmp_path / "two.npz", tmp_path / "none.npz"]
-    assert write_samples(files[0], samples[:2], CONFIG, {}) == 2
+    write_samples(files[0], samples[:2], CONFIG, {})
     write_samples(files[1], samples[2:], CONFIG, {})
     write_samples(files[2], [], CONFIG, {})
     stored = SampleSet.read(files, CONFIG)
