@@ -23,7 +23,7 @@ from sim.app import cli
 from sim.app.analysis.tables import to_markdown
 from sim.app.commands.verify import audit, truth_of_agents
 from sim.app.composition.agents import SPECS
-from sim.app.composition.driven import HUMAN_NAME
+from sim.app.evaluation.results import HUMAN_NAME
 from sim.app.submissions.audit import AuditOptions, check
 from sim.app.submissions.contents import read_submission
 from sim.app.submissions.leaderboard import (

@@ -10,7 +10,7 @@ import msgspec
 from sim.app.composition.record import recording_of, result_of
 from sim.app.composition.setup import RunConfig, Setup, resolve
 from sim.app.evaluation.last_view import write_last_view
-from sim.app.evaluation.results import RunRecord
+from sim.app.evaluation.results import HUMAN_NAME
 from sim.app.evaluation.rollout import record_episode
 from sim.app.options import RunOptions
 from sim.core.interface import Action, AgentSpec, Observation
@@ -19,9 +19,6 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.task.result import EpisodeResult, RolloutResult
 from sim.task.trajectory import SplitName
-
-HUMAN_NAME = "human"
-"""The agent's name in the results of a person."""
 
 
 class Person:
@@ -75,11 +72,6 @@ def setup_of_person(setup: Setup, *, with_agent: bool) -> Setup:
 def _of_world(options: RunOptions | RunConfig) -> dict[str, Any]:
     """Returns the fields that apply to a person as well as to an agent."""
     return {name: getattr(options, name) for name, option in meanings(type(options)).items() if option.of_world}
-
-
-def is_driven(record: RunRecord) -> bool:
-    """Returns whether a person drove the episodes of a run, alone or with an agent."""
-    return str(record.get("agent")).partition("+")[0] == HUMAN_NAME
 
 
 def record_driven(

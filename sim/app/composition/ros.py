@@ -18,8 +18,6 @@ from sim.env.velocity import ObjectNavVelocityEnv
 
 RUNNER = "sim.app.composition.ros:runner"
 """Makes the runner, for `run_missing`."""
-AGENT = "ros"
-"""The agent's name in the results of a robot that other nodes drive."""
 
 
 def _make_nothing(**_: object) -> NoReturn:

@@ -37,6 +37,8 @@ from sim.task.result import READ_BY, EpisodeResult
 
 IDENTITY = ("agent", "semantics", "seed")
 """Keys that a line and the config of its run have in common, with equal values."""
+HUMAN_NAME, NODES_NAME = "human", "ros"
+"""Names of the agent in the results of a person, and of a robot that nodes of ROS 2 drive."""
 LineT = TypeVar("LineT", bound="Line")
 
 
@@ -99,6 +101,16 @@ class RunRecord(TypedDict, total=False):
     physics: Count | None
     segmentation: dict[str, object] | None
     files_sha256: dict[str, str]
+
+
+def is_driven(record: RunRecord) -> bool:
+    """Returns whether a person drove the episodes of a run, alone or with an agent."""
+    return str(record.get("agent")).partition("+")[0] == HUMAN_NAME
+
+
+def can_be_repeated(record: RunRecord) -> bool:
+    """Returns whether `stubborn run` runs the episodes of a run again: no person and no nodes of ROS 2 drove them."""
+    return not is_driven(record) and record.get("agent") != NODES_NAME
 
 
 EPISODE_FOLDERS = ("trajectories", "pictures", "videos", "rerun", "mcap")

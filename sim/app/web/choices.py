@@ -16,9 +16,8 @@ import cv2
 import msgspec
 
 from sim.app.composition.agents import EXPLORERS, SPECS, find_agent, find_explorer, takes_explorer
-from sim.app.composition.driven import HUMAN_NAME, is_driven
 from sim.app.composition.segmenters import KINDS, NetworkConfig, find_segmentation
-from sim.app.evaluation.results import RunRecord
+from sim.app.evaluation.results import HUMAN_NAME, RunRecord, is_driven
 from sim.app.options import RunOptions
 from sim.app.viewers.house_pictures import draw_top_to_scale
 from sim.app.web.controls import Driver, EpisodeRequest

@@ -12,14 +12,14 @@ from typing import Protocol
 
 from sim.app.analysis.display import counted
 from sim.app.cli import USAGE_ERRORS
-from sim.app.composition.driven import HUMAN, HUMAN_NAME, is_driven
+from sim.app.composition.driven import HUMAN
 from sim.app.composition.environments import drawn_episodes
 from sim.app.composition.record import record_of
 from sim.app.composition.runner import Parts, build_parts
 from sim.app.composition.setup import Setup, resolve
 from sim.app.evaluation.config_fields import run_differences
 from sim.app.evaluation.own_code import text_of
-from sim.app.evaluation.results import RunRecord
+from sim.app.evaluation.results import HUMAN_NAME, RunRecord, is_driven
 from sim.app.evaluation.rollout import give_next_goal, next_action, play_episode
 from sim.app.viewers.overlay import goal_marks
 from sim.app.viewers.viewer import Moment

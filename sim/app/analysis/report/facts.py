@@ -12,9 +12,8 @@ from typing import Any, cast
 from sim.app.analysis.comparison import Run
 from sim.app.analysis.report.drawings import Trajectories
 from sim.app.analysis.report.media import picture_of, video_of
-from sim.app.composition.agents import SPECS
 from sim.app.evaluation.parallel import Shard
-from sim.app.evaluation.results import RunRecord, segmentation_of
+from sim.app.evaluation.results import RunRecord, can_be_repeated, segmentation_of
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.option_types import meanings
@@ -62,7 +61,7 @@ def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> Ru
         label,
         run.path.resolve().name,
         shown,
-        command_of(config) if _is_of_run(config) else "",
+        command_of(config) if can_be_repeated(config) else "",
         list(_notes(run, trajectories, index)),
         _hint(run, trajectories, index),
     )
@@ -86,12 +85,6 @@ def command_of(config: RunRecord) -> str:
     return shlex.join(words)
 
 
-def _is_of_run(config: RunRecord) -> bool:
-    """Returns whether `stubborn run` takes the agent of a run: a person or nodes of ROS 2 are none."""
-    agent = str(config.get("agent"))
-    return agent in SPECS or ":" in agent
-
-
 def _setting(value: object) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
@@ -104,7 +97,7 @@ def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
             with contextlib.suppress(ConfigError):  # a shard of version 0.1 was numbered from 0
                 planned, out = len(Shard.parse(str(shard)).select(range(planned))), run.path.parent
         if count < planned:
-            rest = f" The command with --out {out} runs the rest." if _is_of_run(run.config) else ""
+            rest = f" The command with --out {out} runs the rest." if can_be_repeated(run.config) else ""
             yield f"Not finished: {count} of {planned} episodes have ended.{rest}"
     errors = sum(result.is_error for result in run.results.values())
     if errors:
@@ -122,7 +115,7 @@ def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
 def _hint(run: Run, trajectories: Trajectories, index: int) -> str:
     """Returns a sentence about what no episode of the run has, and how to get it; "" if there is nothing."""
     absent = [(name, option) for name, option, count, of in _missing(run, trajectories, index) if count == of > 0]
-    if not absent or not _is_of_run(run.config):
+    if not absent or not can_be_repeated(run.config):
         return ""
     names, options = (
         " and no ".join(name for name, _ in absent),

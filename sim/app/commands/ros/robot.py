@@ -102,11 +102,12 @@ def main(args: Args) -> int:
     from sim.app.composition.environments import episodes_of
     from sim.app.composition.running import run_missing
     from sim.app.composition.setup import resolve
+    from sim.app.evaluation.results import NODES_NAME
 
     names = {field.name for field in fields(RunOptions)} - {"mcap"}
     shared: dict[str, Any] = {name: value for name, value in vars(args).items() if name in names}
     out = args.out or Path("runs") / time.strftime("ros_%Y-%m-%d_%H-%M-%S")
-    options = RunOptions(agent=ros.AGENT, **{**shared, "out": out})
+    options = RunOptions(agent=NODES_NAME, **{**shared, "out": out})
     config = RosConfig(
         rate_hz=args.rate,
         time_limit_s=args.time_limit,

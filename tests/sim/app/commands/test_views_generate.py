@@ -177,6 +177,6 @@ def test_what_training_needs_is_said_before_the_first_view_is_made(
     extras: tuple[str, ...], split: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     main(options(split, tmp_path, views=2, views_per_shard=2, extras=extras))
-    said, shards = capsys.readouterr().out.split("1 shards, 0 complete")
+    said, shards = capsys.readouterr().out.split("1 shard, 0 complete")
     assert ("which `train segmentation` needs" in said) == ("instances" not in extras)
     assert "views-000000: 2 views" in shards

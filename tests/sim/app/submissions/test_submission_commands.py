@@ -18,7 +18,7 @@ import pytest
 from sim.app.analysis.comparison import read_run
 from sim.app.commands import leaderboard, submit, verify
 from sim.app.composition.agents import SPECS
-from sim.app.composition.driven import HUMAN_NAME
+from sim.app.evaluation.results import HUMAN_NAME
 from sim.app.submissions.contents import Submission, read_submission
 from sim.app.submissions.leaderboard import LONG_ACTIONS, Row, repeated, tables
 from sim.app.submissions.packing import About, pack
