@@ -82,8 +82,8 @@ def check(file: Path, options: AuditOptions, truth_of_agents: Mapping[str, bool]
     name = submission.manifest.split.name
     if options.split is None and name not in shipped_splits():
         raise ConfigError(
-            f"{where} was made on the split '{name}', which does not ship; give its folder with --split. That of a "
-            "sealed split is made after the deadline (`stubborn seal reveal`)."
+            f"{where} was made on the split '{name}', which does not ship; give its folder with --split (`stubborn "
+            "leaderboard`: --splits). That of a sealed split is made after the deadline (`stubborn seal reveal`)."
         )
     chosen = name if options.split is None else str(options.split)
     split = load_split(chosen)
