@@ -135,7 +135,9 @@ def test_a_field_of_view_may_be_given_in_radians() -> None:
 
 
 def test_a_constraint_limits_the_tilt(empty: Simulator) -> None:
-    empty.agents[0].agent_config.action_space[4].actuation.constraint = 40.0
+    actuation = empty.agents[0].agent_config.action_space[4].actuation
+    assert actuation is not None
+    actuation.constraint = 40.0
     for tilt_deg in (30.0, 40.0, 40.0):
         empty.step(4)
         tilt = empty.agents[0].state.sensor_states["depth"].rotation.x
