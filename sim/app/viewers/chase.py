@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 import weakref
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -59,11 +60,28 @@ SECTION: Colour = (70, 74, 84)
 """Colour of the inside of walls and furniture that the near plane cuts through."""
 _APART_M = 0.02
 """Surfaces at least this far apart are different ones."""
+_NOTHING = np.float32(1.0 / Z_FAR_M)
+"""Inverse depth of a pixel that shows nothing, 1 / m."""
 OUTSIDE: Colour = (36, 40, 48)
 """Colour of pixels that show nothing: the outside of the house."""
 _DARK, _LENS, _ARROW = (0.10, 0.12, 0.16, 1.0), (0.35, 0.75, 1.0, 1.0), (0.13, 0.35, 0.80, 1.0)
 _LENS_M, _BAND_M = 0.045, 0.05
 """Radius of the lens and half the height of the band around the robot, below its top."""
+
+
+class _Eye(NamedTuple):
+    """Where the camera is, what it looks at, and where its image begins."""
+
+    at_m: NDArray[np.float64]
+    """(3,) optical centre."""
+    axes: NDArray[np.float64]
+    """(3, 3) forward, left and up as rows."""
+    near_m: float
+    """Distance of the near plane."""
+
+    def inverse(self, depth: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Returns the inverse of the depth in 1 / m for the rows of OpenGL's depth buffer, from top to bottom."""
+        return depth[::-1] * np.float32(_depth_slope(self.near_m)) + _NOTHING
 
 
 class ChaseView:
@@ -113,18 +131,19 @@ class ChaseView:
         eye_m, axes = eye_and_axes(pose)
         robot_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + 0.5 * self._world.robot.height_m])
         near_m = max(Z_NEAR_M, float((robot_m - eye_m) @ axes[0]) - max(CUT_M, self._reach_m(axes[0])))
-        shown, hidden = (self._in_range(geoms, eye_m, axes, near_m) for geoms in (self._geoms, self._hidden))
+        eye = _Eye(eye_m, axes, near_m)
+        shown, hidden = (self._in_range(geoms, eye) for geoms in (self._geoms, self._hidden))
         lamps = self._lamps.choose(data, robot_m, axes[0] * np.array([1.0, 1.0, 0.0]))
         self._lamps.switch_on(lamps)
-        self._scene.fill(data, shown, eye_m, axes, self._slopes, near_m)
+        self._fill(shown, eye)
         self._lamps.restore()
         self._mark_front(pose)
-        picture, inverse = self._drawn(near_m, eye_m, axes)
-        cut = self._cut(shown, near_m, eye_m, axes)
+        picture, inverse = self._drawn(eye)
+        cut = self._cut(shown, eye)
         if cut.size:
-            self._fill_sections(picture, inverse, cut, near_m, eye_m, axes)
+            self._fill_sections(picture, inverse, cut, eye)
         if hidden.size:
-            self._tint(picture, inverse, hidden, near_m, eye_m, axes)
+            self._tint(picture, inverse, hidden, eye)
         return picture
 
     def close(self) -> None:
@@ -136,81 +155,61 @@ class ChaseView:
         robot = self._world.robot
         return robot.radius_m * math.hypot(direction[0], direction[1]) + 0.5 * robot.height_m * abs(float(direction[2]))
 
-    def _in_range(self, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray, near_m: float) -> NDArray[np.intp]:
+    def _in_range(self, geoms: NDArray[np.intp], eye: _Eye) -> NDArray[np.intp]:
         """Returns those of the given geoms that are near enough to be drawn and in front of the near plane."""
-        model, offset = self._world.model, self._world.data.geom_xpos[geoms] - eye_m
+        model, offset = self._world.model, self._world.data.geom_xpos[geoms] - eye.at_m
         bound = np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)[geoms]
-        return geoms[(np.linalg.norm(offset, axis=1) < FAR_M + bound) & (offset @ axes[0] + bound > near_m)]
+        return geoms[(np.linalg.norm(offset, axis=1) < FAR_M + bound) & (offset @ eye.axes[0] + bound > eye.near_m)]
 
-    def _cut(self, geoms: NDArray[np.intp], near_m: float, eye_m: NDArray, axes: NDArray) -> NDArray[np.intp]:
+    def _cut(self, geoms: NDArray[np.intp], eye: _Eye) -> NDArray[np.intp]:
         """Returns those of the given geoms that the near plane may cut through; planes have no inside."""
-        bound_m, offset = self._world.model.geom_rbound[geoms], self._world.data.geom_xpos[geoms] - eye_m
-        return geoms[(bound_m > 0.0) & (np.abs(offset @ axes[0] - near_m) < bound_m)]
+        bound_m, offset = self._world.model.geom_rbound[geoms], self._world.data.geom_xpos[geoms] - eye.at_m
+        return geoms[(bound_m > 0.0) & (np.abs(offset @ eye.axes[0] - eye.near_m) < bound_m)]
+
+    def _fill(self, geoms: NDArray[np.intp], eye: _Eye) -> None:
+        """Fills the scene with geoms."""
+        self._scene.fill(self._world.data, geoms, eye.at_m, eye.axes, self._slopes, eye.near_m)
 
     def _fill_sections(
-        self,
-        picture: NDArray[np.uint8],
-        inverse: NDArray[np.float32],
-        cut: NDArray[np.intp],
-        near_m: float,
-        eye_m: NDArray,
-        axes: NDArray,
+        self, picture: NDArray[np.uint8], inverse: NDArray[np.float32], cut: NDArray[np.intp], eye: _Eye
     ) -> None:
         """Paints the pixels that show the inside of a cut geom, except where they would hide the robot.
 
-        Args:
-            picture: (h, w, 3); changed in place.
-            inverse: (h, w) inverse of the visible depth, 1 / m; changed in place.
-            cut: ids of the geoms that the near plane may cut through.
-            near_m: near plane.
-            eye_m: (3,) optical centre.
-            axes: (3, 3) the camera's axes.
+        Changes the picture (h, w, 3) and the inverse of its depth (h, w), 1 / m.
         """
-        self._scene.fill(self._world.data, cut, eye_m, axes, self._slopes, near_m)
+        self._fill(cut, eye)
         self._scene.scene.nlight = 0
         self._scene.scene.flags[:] = 0  # draws faces that look away from the eye, too
-        inside = self._inverse_depth(near_m)
-        mask = (inside > np.float32(1.0 / Z_FAR_M)) & (1.0 / inside < 1.0 / inverse - _APART_M)
+        inside = self._inverse_depth(eye)
+        mask = (inside > _NOTHING) & (1.0 / inside < 1.0 / inverse - _APART_M)
         rows, columns = np.nonzero(mask)
         left = self._slopes[0] * (1.0 - 2.0 * (columns + 0.5) / mask.shape[1])
         up = self._slopes[1] * (1.0 - 2.0 * (rows + 0.5) / mask.shape[0])
-        rays = axes[0] + left[:, None] * axes[1] + up[:, None] * axes[2]
+        rays = eye.axes[0] + left[:, None] * eye.axes[1] + up[:, None] * eye.axes[2]
         pose = self._world.pose
-        away_m = (eye_m + rays / inverse[mask][:, None])[:, :2] - (pose.x_m, pose.y_m)
+        away_m = (eye.at_m + rays / inverse[mask][:, None])[:, :2] - (pose.x_m, pose.y_m)
         mask[mask] = np.linalg.norm(away_m, axis=1) > self._world.robot.radius_m + _APART_M
         picture[mask], inverse[mask] = SECTION, inside[mask]
 
-    def _inverse_depth(self, near_m: float) -> NDArray[np.float32]:
-        """Renders the filled scene and returns the inverse of its depth (h, w) in 1 / m; 1 / far plane: nothing."""
+    def _inverse_depth(self, eye: _Eye) -> NDArray[np.float32]:
+        """Renders the filled scene and returns the inverse of its depth (h, w) in 1 / m."""
         mujoco.mjr_restoreBuffer(self._context)
         mujoco.mjr_render(self._rect, self._scene.scene, self._context)
         mujoco.mjr_readPixels(None, self._depth, self._rect, self._context)
-        return self._depth[::-1] * np.float32(_depth_slope(near_m)) + np.float32(1.0 / Z_FAR_M)
+        return eye.inverse(self._depth)
 
     def _tint(
-        self,
-        picture: NDArray[np.uint8],
-        inverse: NDArray[np.float32],
-        hidden: NDArray[np.intp],
-        near_m: float,
-        eye_m: NDArray,
-        axes: NDArray,
+        self, picture: NDArray[np.uint8], inverse: NDArray[np.float32], hidden: NDArray[np.intp], eye: _Eye
     ) -> None:
         """Tints invisible obstacles in front of visible surfaces, and draws their edges.
 
-        Args:
-            picture: (h, w, 3); changed in place.
-            inverse: (h, w) inverse of the visible depth, 1 / m.
-            hidden: ids of invisible geoms.
-            near_m: near plane.
-            eye_m: (3,) optical centre.
-            axes: (3, 3) the camera's axes.
+        Changes the picture (h, w, 3); `inverse` (h, w) is the inverse of its depth, 1 / m.
         """
-        self._scene.fill(self._world.data, hidden, eye_m, axes, self._slopes, near_m)
+        self._fill(hidden, eye)
         for geom in self._scene.scene.geoms[: self._scene.scene.ngeom]:
             geom.rgba[3], geom.transparent = 1.0, 0  # MuJoCo writes no depth for transparent geoms
-        before = self._inverse_depth(near_m)
-        mask = (before > np.float32(1.0 / Z_FAR_M)) & (1.0 / before < 1.0 / inverse - _IN_FRONT_M)
+        before = self._inverse_depth(eye)
+        mask = (before > _NOTHING) & (1.0 / before < 1.0 / inverse - _IN_FRONT_M)
         tint = np.array(HIDDEN, np.float32)
         picture[mask] = ((1.0 - _TINT) * picture[mask] + _TINT * tint).astype(np.uint8)
         outlines, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
@@ -218,7 +217,7 @@ class ChaseView:
             picture, [outline for outline in outlines if cv2.contourArea(outline) > _SPECK_PX], -1, HIDDEN, 1
         )
 
-    def _drawn(self, near_m: float, eye_m: NDArray, axes: NDArray) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    def _drawn(self, eye: _Eye) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """Returns the picture of the filled scene, and the inverse of its depth (h, w) in 1 / m."""
         flags = self._scene.scene.flags
         flags[:] = 0
@@ -227,12 +226,12 @@ class ChaseView:
         mujoco.mjr_render(self._rect, self._scene.scene, self._context)
         mujoco.mjr_readPixels(self._color, self._depth, self._rect, self._context)
         # The shading expects the depth buffer of the robot's camera, whose near plane is another one.
-        raw = self._depth * np.float32(_depth_slope(near_m) / _depth_slope(Z_NEAR_M))
+        raw = self._depth * np.float32(_depth_slope(eye.near_m) / _depth_slope(Z_NEAR_M))
         picture = self._color[::-1].copy()
         if self._shading is not None:
-            picture = self._shading.apply(self._color, raw, self._world.data, None, eye_m, axes, None)
+            picture = self._shading.apply(self._color, raw, self._world.data, None, eye.at_m, eye.axes, None)
         picture[raw[::-1] <= 0.0] = OUTSIDE
-        return picture, self._depth[::-1] * np.float32(_depth_slope(near_m)) + np.float32(1.0 / Z_FAR_M)
+        return picture, eye.inverse(self._depth)
 
     def _mark_front(self, pose: Pose) -> None:
         """Adds an arrow, and a band with a lens to the default robot, which show where the robot's front is."""

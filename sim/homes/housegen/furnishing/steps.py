@@ -24,6 +24,8 @@ RUNNER_M = 1.0
 AISLE_M = 0.75
 """Floor kept free in front of worktops and appliances."""
 ROW_GAP_M = 0.004
+BESIDE_M = 0.05
+"""Gap between an item and the one that it is placed beside."""
 _TOP_USES = {
     "dining": ("table",), "desk": ("office",), "coffee": ("low", "top"), "media": ("media",),
     "dresser": ("dresser", "top"),
@@ -127,11 +129,11 @@ def keep_from_fire(layout: RoomLayout, hearth: Placement) -> None:
 
 
 def place_beside(layout: RoomLayout, host: Placement, item: Item, towards: float) -> Placement | None:
-    """Places an item 5 cm next to another one at the same wall: `towards` is +1 or -1 along the side."""
+    """Places an item next to another one at the same wall: `towards` is +1 or -1 along the side."""
     if host.side is None:
         return None
     lo, hi = host.rect.span(host.side)
-    reach_m = item.size_m[1] / 2 + 0.05
+    reach_m = item.size_m[1] / 2 + BESIDE_M
     placement = layout.walls.placement(item, host.side, hi + reach_m if towards > 0 else lo - reach_m)
     return placement if layout.try_put(placement) else None
 
