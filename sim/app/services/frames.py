@@ -37,8 +37,8 @@ class UnknownPictureError(ConfigError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene:
-    """What a frame tells besides its images: all that its file has as JSON."""
+class FrameFacts:
+    """What is known of a frame besides its arrays; the part of its file that is JSON."""
 
     names: tuple[str, ...]
     """Names of the objects of the house, such as `chair_03`."""
@@ -55,7 +55,7 @@ class Scene:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Frame(Scene):
+class Frame(FrameFacts):
     """What a camera sees, and what it is."""
 
     rgb: NDArray[np.uint8]
@@ -70,7 +70,7 @@ class Frame(Scene):
     def to_bytes(self) -> bytes:
         """Returns the frame as an NPZ file."""
         arrays = {name: getattr(self, name) for name in _ARRAYS}
-        others = {field.name: getattr(self, field.name) for field in fields(Scene)}
+        others = {field.name: getattr(self, field.name) for field in fields(FrameFacts)}
         text = json.dumps({**others, "camera": asdict(self.camera)})
         stream = io.BytesIO()
         np.savez(stream, allow_pickle=False, others=np.frombuffer(text.encode(), np.uint8), **arrays)
@@ -85,7 +85,7 @@ class Frame(Scene):
         """
         arrays = read_npz(data, (*_ARRAYS, "others"), what="frame", most_bytes=MAX_BYTES)
         text = arrays.pop("others").tobytes()
-        frame = cls(**arrays, **vars(parse_json(text, Scene, where="This is not a frame: its text")))
+        frame = cls(**arrays, **vars(parse_json(text, FrameFacts, where="This is not a frame: its text")))
         height, width = frame.objects.shape if frame.objects.ndim == 2 else (0, 0)
         right = (
             frame.rgb.dtype == np.uint8
