@@ -51,6 +51,7 @@ from sim.core.reading import first_unprintable, printable, reason_of
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
+ItemT = TypeVar("ItemT")
 ArgsT = TypeVar("ArgsT", bound="DataclassInstance")
 USAGE_ERRORS = (ObjectNavError,)
 """Errors that the user can correct; they are printed in one line, without a traceback."""
@@ -90,6 +91,17 @@ def chosen(text: str, names: Iterable[str], *, option: str) -> list[str]:
     if not selected or not set(selected) <= set(known):
         raise ConfigError(f"{option} must be some of {','.join(known)}, got '{text}'.")
     return [name for name in known if name in selected]
+
+
+def first_of(items: Sequence[ItemT], count: int | None, *, option: str, source: str) -> Sequence[ItemT]:
+    """Returns the first items of a source that an option counts; all if the count is None.
+
+    Raises:
+        ConfigError: the source has fewer.
+    """
+    if count is not None and count > len(items):
+        raise ConfigError(f"{option} must be at most {len(items)}, all of {source}, got {count}.")
+    return items[:count]
 
 
 def run(

@@ -152,10 +152,11 @@ def _write_split(args: Args, split: str) -> Iterator[Made]:
     """Writes the houses of a split that is shipped as files."""
     if split not in SPLITS:
         raise ConfigError(f"No split '{split}'. Available: {', '.join(SPLITS)}, train.")
+    recipes = cli.first_of(SPLITS[split], args.houses, option="--houses", source=f"split '{split}'")
     textures = args.out.resolve().parent / "textures"
     if not textures.is_dir():
         copy_textures(textures)
-    yield from _written(args, ordered_map(_make, SPLITS[split][: args.houses], workers=args.workers))
+    yield from _written(args, ordered_map(_make, recipes, workers=args.workers))
 
 
 def _write_list(args: Args, split: str) -> Iterator[Made]:
@@ -203,10 +204,11 @@ def _imported(args: Args) -> ImportedFurniture:
 def _write_transfer_test(args: Args) -> Iterator[Made]:
     """Writes the houses of the transfer test, and the textures into a folder next to them."""
     assert args.furniture is not None
+    recipes = cli.first_of(TRANSFER_TEST, args.houses, option="--houses", source="the transfer test")
     furniture = ImportedFurniture(args.furniture, "transfer")
     make = functools.partial(_make, textures=SHARED_TEXTURES, furniture=furniture)
     copy_textures(args.out / SHARED_TEXTURES)
-    yield from _written(args, ordered_map(make, TRANSFER_TEST[: args.houses], workers=args.workers))
+    yield from _written(args, ordered_map(make, recipes, workers=args.workers))
 
 
 def _written(args: Args, houses: Iterable[Made]) -> Iterator[Made]:

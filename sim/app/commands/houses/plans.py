@@ -14,7 +14,7 @@ from __future__ import annotations
 import functools
 import statistics
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -78,9 +78,9 @@ def main(args: Args) -> int:
         cli.require_unset(
             args, ("pool", "first_seed", "kind", "area_m2"), "is for generated houses: leave out --split."
         )
+    houses, results = _exported(args), []
     args.out.mkdir(parents=True, exist_ok=True)
-    results = []
-    for exported in _exported(args):
+    for exported in houses:
         results.append(exported)
         print(f"{exported.name}: {exported.summary}", flush=True)
     times = [exported.seconds for exported in results if exported.seconds]
@@ -94,7 +94,7 @@ def _exported(args: Args) -> Iterator[Exported]:
     shard = Shard.parse(args.shard) if args.shard else Shard()
     if args.split is not None:
         split = load_split(args.split)
-        names: Sequence[str] = list(split.houses)[: args.houses]
+        names = cli.first_of(list(split.houses), args.houses, option="--houses", source=f"split '{args.split}'")
         export = functools.partial(_export_named, args.out, args.split, split.version)
         return ordered_map(export, shard.select(names), workers=args.workers)
     config = HouseConfig(pool=args.pool, kind=args.kind, area_m2=args.area_m2)

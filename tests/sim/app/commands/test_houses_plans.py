@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
+from sim.app.commands.houses import generate
 from sim.app.commands.houses import plans as export_plans
 from sim.core.interface import ConfigError
 from sim.homes.plans.plan import read_plan, write_plan
@@ -37,3 +39,10 @@ def test_an_option_of_generated_houses_is_refused_for_those_of_a_split(tmp_path:
     with pytest.raises(ConfigError, match=f"--{next(iter(option)).replace('_', '-')} is for generated houses"):
         export_plans.main(export_plans.Args(out=tmp_path / "plans", split="val", houses=1, **option))
     assert not (tmp_path / "plans").exists()
+
+
+@pytest.mark.parametrize("command", [export_plans, generate])
+def test_more_houses_than_the_split_has_are_refused(tmp_path: Path, command: ModuleType):
+    with pytest.raises(ConfigError, match=r"--houses must be at most \d+, all of split 'val', got 1000\."):
+        command.main(command.Args(out=tmp_path / "houses", split="val", houses=1000))
+    assert not (tmp_path / "houses").exists()
