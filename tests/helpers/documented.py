@@ -424,7 +424,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn train segmentation --init shipped --init-share 0.5 --views runs/views_finer --val-views views_val "
     "--rate 0.0003 --hours 1 --out runs/finer": Only("docs/segmentation.md has the same command, which is tried"),
     "stubborn import procthor val.jsonl.gz --houses 10 --workers 2 --out runs/procthor10": _PACKAGE,
-    "stubborn gallery --houses runs/procthor10/house_00003.xml --out runs/procthor10/pictures": _PACKAGE,
+    "stubborn gallery --houses runs/procthor10/val_0004.xml --out runs/procthor10/pictures": _PACKAGE,
     "stubborn episodes --split runs/procthor10 --episodes 100": _PACKAGE,
     **dict.fromkeys(
         (
