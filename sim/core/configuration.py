@@ -170,9 +170,11 @@ def _replaced(node: DataclassInstance, values: Mapping[str, object], path: str) 
         here = f"{path}.{name}" if path else name
         if name not in names:
             owner = f"'{path}'" if path else "The configuration"
-            raise ConfigError(
-                f"There is no field '{here}'.{did_you_mean(name, names)} {owner} has: {', '.join(names)}."
-            )
+            inner = [field for field in field_paths(node) if field.endswith(f".{name}")]
+            similar = did_you_mean(name, names)
+            if len(inner) == 1:  # the name is right, and the path before it is missing
+                similar = f" Did you mean '{f'{path}.' if path else ''}{inner[0]}'?"
+            raise ConfigError(f"There is no field '{here}'.{similar} {owner} has: {', '.join(names)}.")
         current = getattr(node, name)
         if isinstance(value, Mapping) and _is_node(current):
             changed[name] = _replaced(current, value, here)

@@ -58,6 +58,7 @@ def test_all_fields_have_a_path_and_each_can_be_set_to_its_own_value() -> None:
             r"no field 'legs.lenght_m'. Did you mean 'length_m'\? 'legs' has: length_m, count, shape",
         ),
         ({"chair": 1}, r"'chair'.*sizes_m"),
+        ({"length_m": 1}, r"no field 'length_m'. Did you mean 'legs.length_m'\? The configuration has: legs"),
         ({"legs.length_m": -1}, r"legs.length_m: Leg.length_m must be > 0 m, got -1"),
         ({"legs.count": "many"}, "'legs.count' cannot be 'many'"),
         ({"legs.shape": "oval"}, "'legs.shape' cannot be 'oval'"),
