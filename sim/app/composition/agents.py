@@ -136,7 +136,11 @@ def find_explorer(name: str) -> ExplorerConfig:
         )
     declared = import_attribute(name)
     if not dataclasses.is_dataclass(declared) or isinstance(declared, type) or not isinstance(declared, ExplorerConfig):
-        raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
+        got = "the class" if isinstance(declared, type) else f"'{type(declared).__name__}'"
+        raise ConfigError(
+            f"--explorer '{name}' must be an object of a dataclass with a method make(camera); got {got}. "
+            "docs/agents.md has an example."
+        )
     return declared
 
 

@@ -112,6 +112,12 @@ def test_an_explorer_with_a_similar_name_is_named() -> None:
         find_explorer("informed-tuor")
 
 
+@pytest.mark.parametrize(("name", "message"), [("NUMBER", "got 'int'"), ("SpyConfig", "got the class")])
+def test_an_explorer_of_the_wrong_kind_is_refused(name: str, message: str) -> None:
+    with pytest.raises(ConfigError, match=f"must be an object of a dataclass .*; {message}"):
+        find_explorer(f"tests.helpers.agents:{name}")
+
+
 @pytest.mark.costly
 def test_a_factory_with_other_arguments_is_refused_in_one_sentence(
     house: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
