@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from sim.app.analysis import display
 from sim.app.composition.agents import SPECS
 from sim.app.options import RunOptions
 from sim.core.invocation import RUN_STOPPED
+from sim.task.result import EpisodeResult
 from stubborn.agents import EXPLORERS
 
 Args = RunOptions
@@ -54,11 +55,14 @@ def _run(options: RunOptions, console: Console) -> int:
     setup = replace(setup, options=replace(options, episodes=count, out=out))
     results, summary = run_missing(setup, episodes, split, console)
     display.print_results(console, results, summary)
-    failures = (result.episode_id for result in results if not result.success and options.house is None)
-    display.print_where_to_look(
-        console, out, video=options.video, failed=next(failures, None), sharded=options.shard is not None
-    )
+    failed = first_failure(results) if options.house is None else None
+    display.print_where_to_look(console, out, video=options.video, failed=failed, sharded=options.shard is not None)
     return 1 if summary["errors"] else 0
+
+
+def first_failure(results: Iterable[EpisodeResult]) -> str | None:
+    """Returns the ID of the first episode that failed without an error; None: there is none."""
+    return next((result.episode_id for result in results if not result.success and not result.is_error), None)
 
 
 def agent_table() -> Table:

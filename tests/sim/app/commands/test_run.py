@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.app.commands.run import entry
+from sim.app.commands.run import entry, first_failure
 from sim.app.evaluation.last_view import picture_file
 from sim.core.geometry.pose import Pose
 from sim.core.paths import code_hash
@@ -27,7 +27,7 @@ from sim.task.metrics import EXPLORED_SHARE
 from sim.task.result import METRICS
 from sim.task.trajectory import read_trajectory, trajectory_file
 from stubborn.segmentation.shipped import SHIPPED_REDNET
-from tests.helpers.results import lines_of
+from tests.helpers.results import a_result, lines_of
 from tests.helpers.worlds import two_storeys
 
 SMALL = ("camera.width_px=160", "camera.height_px=120")
@@ -403,3 +403,11 @@ def test_a_shard_without_episodes_says_so_and_leaves_nothing(
 def test_errors_are_run_again_in_the_folder_of_their_run(capsys: pytest.CaptureFixture[str]) -> None:
     assert entry(["--retry-errors"]) == 2
     assert "--retry-errors needs --out" in capsys.readouterr().err
+
+
+def test_the_failure_to_film_is_not_an_episode_that_an_error_ended() -> None:
+    found = a_result(episode_id="a")
+    broken = a_result(episode_id="b", success=0.0, end_reason="error", error="KeyError")
+    missed = a_result(episode_id="c", success=0.0, end_reason="max_steps")
+    assert first_failure([found, broken, missed]) == "c"
+    assert first_failure([found, broken]) is None
