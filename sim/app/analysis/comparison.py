@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim.app.analysis.display import counted
 from sim.app.analysis.metrics import difference_cell, difference_note, episodes_of, mean_cell
 from sim.app.analysis.tables import ResultTable
 from sim.app.evaluation.config_fields import ABSENT, field_text, run_differences
@@ -85,7 +86,7 @@ def compare(first: Run, second: Run) -> ResultTable:
     rows = [(metric.title, [mean_cell(metric, a), mean_cell(metric, b), cell]) for metric, cell in against.items()]
     changed = [i for i in common if first.results[i].success != second.results[i].success]
     notes = [
-        f"A: {first.path}, B: {second.path}; {episodes} episodes of both runs.",
+        f"A: {first.path}, B: {second.path}; {counted(episodes, 'episode')} of both runs.",
         f"not significant: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
     ]
     errors = [sum(result.is_error for result in results) for results in (a, b)]

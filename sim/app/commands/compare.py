@@ -76,4 +76,4 @@ def verdict(first: Run, second: Run) -> str:
             sentences[-1] += (
                 f" (to be significant, this difference needs about {needed} pairs in {more:.1f} times the houses)"
             )
-    return f"Verdict over {len(set(episodes_of(a)))} episodes. {'. '.join(sentences)}."
+    return f"Verdict over {display.counted(len(set(episodes_of(a))), 'episode')}. {'. '.join(sentences)}."

@@ -283,6 +283,11 @@ def test_the_verdict_names_success_and_spl_and_whether_they_differ(
     assert "SPL: " in said
 
 
+def test_the_verdict_over_one_episode_says_so_in_the_singular(tmp_path: Path) -> None:
+    first, second = (read_run(run_folder(tmp_path / name, "A")) for name in "ab")
+    assert verdict(first, second).startswith("Verdict over 1 episode. ")
+
+
 def test_replicates_of_an_episode_count_once_in_a_comparison_which_states_their_spread(tmp_path: Path) -> None:
     folders = [run_folder(tmp_path / name, "abcd", spl=0.5) for name in "ab"]
     for folder, outcomes in zip(folders, ("1100", "1011"), strict=True):

@@ -111,7 +111,7 @@ def test_a_comparison_has_the_notes_of_the_command_and_names_the_runs_by_their_f
     means, _ = Runs(tmp_path).comparison("one", "two")
     notes = means["notes"]
     assert isinstance(notes, list)
-    assert notes[0] == "A: one, B: two; 1 episodes of both runs."
+    assert notes[0] == "A: one, B: two; 1 episode of both runs."
     assert notes[2].startswith("Ended with an error: 0 of A, 1 of B")
 
 
