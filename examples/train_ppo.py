@@ -172,6 +172,11 @@ def main(args: Args) -> int:
     content = io.BytesIO()
     policy.save(content)
     write_atomically(args.out / "policy.zip", content.getvalue())
+    if not progress.rows:
+        print(
+            f"The training ended before its first row, which comes after {STEPS_PER_UPDATE:,} steps: the policy is "
+            "untrained. Give more --minutes."
+        )
     settings = args.out / "run.toml"
     write_atomically(
         settings,

@@ -197,7 +197,22 @@ def test_the_example_of_ppo_trains_and_tries_its_policy(
     assert rows[0].startswith("steps,minutes,steps_per_s,episodes,success")
     assert [row.split(",")[0] for row in rows[1:]] == ["16", "32"]
     assert (tmp_path / "policy.zip").stat().st_size > 0
-    assert "success without exploration: " in capsys.readouterr().out
+    output = capsys.readouterr().out
+    assert "success without exploration: " in output
+    assert "untrained" not in output
+
+
+@pytest.mark.costly
+def test_the_example_of_ppo_says_that_a_short_training_has_not_changed_the_policy(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("stable_baselines3", reason="the extra [train] is not installed")
+    from examples import train_ppo
+
+    assert train_ppo.main(train_ppo.Args(minutes=1e-9, envs=1, max_steps=5, trials=0, out=tmp_path)) == 0
+    assert "The training ended before its first row, which comes after 1,024 steps: the policy is untrained. " in (
+        capsys.readouterr().out
+    )
 
 
 def test_the_example_of_ppo_sees_the_goal_from_the_robot_and_walls_as_near() -> None:
