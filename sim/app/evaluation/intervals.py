@@ -42,6 +42,8 @@ MIN_PAIRS = 20
 MAX_EFFECTIVE = 25.0
 """Largest effective number of episodes per episode: values that are nearly equal, such as the SPL of an agent that
 always succeeds, do not show how often others fail."""
+MAX_FACTOR = 100.0
+"""An amount whose interval would end above this multiple of the mean, as in two houses, has no interval."""
 _ROUNDS = 50
 
 
@@ -49,7 +51,8 @@ _ROUNDS = 50
 class Estimate:
     """A mean over episodes, a paired difference or a ratio, with its 95 % interval.
 
-    All are None without episodes. There is no interval of one episode, nor of equal values without an upper limit.
+    All are None without episodes. There is no interval of one episode; nor, without an upper limit, of equal values or
+    of a mean that is known to no better than a factor of `MAX_FACTOR`.
     """
 
     mean: float | None
@@ -271,10 +274,13 @@ def _bounded(mean: float, error: float, clusters: int, count: int) -> tuple[floa
 
 
 def _amount(mean: float, error: float, clusters: int) -> tuple[float, float] | tuple[None, None]:
-    """Returns the interval of a mean of values without an upper limit, on its logarithm."""
+    """Returns the interval of a mean of values without an upper limit, on its logarithm; none where it says nothing."""
     if clusters < 2 or error == 0.0:
         return None, None
-    factor = math.exp(min(_quantile(clusters) * error / mean, 700.0))
+    exponent = _quantile(clusters) * error / mean
+    if exponent > math.log(MAX_FACTOR):
+        return None, None
+    factor = math.exp(exponent)
     return mean / factor, mean * factor
 
 

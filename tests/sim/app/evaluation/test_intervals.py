@@ -83,6 +83,12 @@ def test_the_interval_of_an_amount_is_above_0_and_longer_above_the_mean() -> Non
     assert low * high == pytest.approx(16.0)
 
 
+def test_an_amount_in_two_houses_has_no_interval_that_says_nothing() -> None:
+    far = estimate([1.0, 40.0], ["a", "b"])
+    assert (far.mean, far.low, far.high) == (20.5, None, None)
+    assert estimate([10.0, 12.0], ["a", "b"]).low is not None
+
+
 @pytest.mark.parametrize(("between", "within"), [(0.5, 0.1), (0.2, 0.4), (0.0, 1.0)])
 def test_intervals_over_ten_houses_hold_the_true_mean_in_about_95_of_100_samples(between: float, within: float) -> None:
     rng, names = np.random.default_rng(0), houses_of(10, 6)
