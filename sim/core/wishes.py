@@ -158,7 +158,9 @@ def _split_places(rest: str) -> list[tuple[Place, str]]:
     parts = _BEFORE_PLACE.split(f" {rest} ")
     phrases = [parts[0], *parts[2::2]]
     places: list[Place] = [_PLACES[word] for word in parts[1::2]]
-    if any(not phrase.strip() for phrase in phrases):
+    if any(not normal_form(str(phrase)) for phrase in phrases):
+        if len(parts) == 1:
+            raise WishError("A goal in words must name an object, such as 'chair'.")
         raise WishError(f"The goal '{rest}' must name an object on each side of '{parts[1]}'.")
     later: list[tuple[Place, str]] = list(zip(places, map(str.strip, map(str, phrases[1:])), strict=True))
     return [_first(phrases[0].strip()), *later]

@@ -18,12 +18,12 @@ from sim.core.goals import NO_GOAL, GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
 from sim.core.invocation import command
 from sim.core.store import kept, key_of
-from sim.core.wishes import parse_wish, require_goal
+from sim.core.wishes import category_of_label, parse_wish, require_goal
 from sim.gl import mujoco
 from sim.houses.geoms import data_at_rest
 from sim.houses.labels import Instance, rendered_geoms
 from sim.task.footprints import Footprint
-from sim.task.meaning import Meaning
+from sim.task.meaning import MAX_LISTED, Meaning
 from sim.task.seen_floor import SeenFloor, floor_cells
 from sim.task.success import SIGHT_BLOCKERS, GoalRegion, Surroundings, sight_blockers
 from sim.world.freespace import FreeSpace
@@ -98,6 +98,10 @@ class GroundTruth:
             else:
                 require_goal(goal)
                 named = tuple(instance for instance in labels.instances if instance.name == goal)
+                category = None if named else category_of_label(goal)
+                if category is not None:
+                    others = ", ".join(instance.name for instance in labels.of_category(category)[:MAX_LISTED])
+                    raise EpisodeError(self._absent(goal, others or self._what_it_has()))
                 self._instances[goal] = named or self.meaning.satisfying(parse_wish(goal))
         return self._instances[goal]
 
@@ -285,10 +289,11 @@ class GroundTruth:
     def _existing(self, region: GoalRegion) -> GoalRegion:
         """Returns the region; raises EpisodeError if no storey of the house has an instance."""
         if not region.exists and region.goal != NO_GOAL.text:
-            raise EpisodeError(
-                f"House '{self.world.house.name}' has no '{region.goal}'. It has: {self._what_it_has()}."
-            )
+            raise EpisodeError(self._absent(region.goal, self._what_it_has()))
         return region
+
+    def _absent(self, goal: str, has: str) -> str:
+        return f"House '{self.world.house.name}' has no '{goal}'. It has: {has}."
 
     def _may_have_moved(self, goal: str) -> bool:
         """Returns whether an object that satisfies a goal is on a body that can move."""

@@ -83,7 +83,9 @@ def test_a_room_may_stand_before_the_name_unless_both_are_a_word():
         ("chair inside my bed room by the bed", "No room is known as 'bed room'. Did you mean 'bedroom'"),
         ("spaceship in the batroom", "No object is known as 'spaceship in the batroom'"),
         ("chair next to", "chair next to"), ("", "1 to 300 characters"), ("x" * 301, "got 301"),
-        ("chair next to the red table", "'the red table'"),
+        ("chair next to the red table", "'the red table'"), ("chair next to the", "object on each side of 'next to'"),
+        ("find", "must name an object"), ("the", "must name an object"), ("!?", "must name an object"),
+        ("find it in the bedroom", "'it'"), ("in the bedroom", "must name an object"),
     ],
 )  # fmt: skip
 def test_an_unknown_word_is_named_and_not_guessed(text, words):

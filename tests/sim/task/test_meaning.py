@@ -46,6 +46,8 @@ def test_objects_that_satisfy_a_goal(task, goal, expected):
         ),
         ("the smaller of the two chairs", "has 3 objects for 'smaller of the two chairs', not 2"),
         ("pendant lamp", "has no 'pendant lamp'"),
+        ("chair_77", "has no 'chair_77'. It has: chair_00, chair_01, chair_02."),
+        ("bed_00", "has no 'bed_00'. It has: chair, table."),
     ],
 )
 def test_what_a_house_cannot_satisfy_is_told_with_what_there_is(task, goal, words):
