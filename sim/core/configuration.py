@@ -20,7 +20,7 @@ import msgspec
 
 from sim.core.errors import ConfigError, did_you_mean
 from sim.core.geometry.numbers import LARGEST, is_number
-from sim.core.reading import parse_json, read_bytes
+from sim.core.reading import parse_json, read_bytes, without_mark
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -128,10 +128,10 @@ def read_settings(file: Path) -> dict[str, object]:
         ConfigError: the file is missing, unreadable, or holds no table of settings.
     """
     content = read_bytes(file, what="--config-file", most=MAX_SETTINGS_BYTES)
-    if file.suffix != ".toml":
+    if file.suffix.lower() != ".toml":
         return dict(leaves_of(parse_json(content, dict[str, object], where=f"--config-file '{file}'")))
     try:
-        return dict(leaves_of(tomllib.loads(content.decode("utf-8"))))
+        return dict(leaves_of(tomllib.loads(without_mark(content).decode("utf-8"))))
     except RecursionError:
         raise ConfigError(f"--config-file '{file}' is nested too deeply.") from None
     except ValueError as error:
@@ -152,13 +152,21 @@ def _is_node(value: object) -> TypeGuard[DataclassInstance]:
 
 
 def _put(nested: dict[str, object], names: list[str], value: object, path: str) -> None:
-    """Enters a value into nested dicts, one level for each name of its path."""
-    for name in names[:-1]:
+    """Enters a value into nested dicts, one level for each name of its path; of two values the later one counts."""
+    *outer, last = names
+    for name in outer:
         inner = nested.setdefault(name, {})
         if not isinstance(inner, dict):
             raise ConfigError(f"'{path}' is set, and so is a field that contains it.")
         nested = inner
-    nested[names[-1]] = value
+    if isinstance(value, Mapping):
+        nested.setdefault(last, {})
+        for key, item in value.items():
+            _put(nested, [last, key], item, f"{path}.{key}")
+    elif isinstance(nested.get(last), dict):
+        raise ConfigError(f"'{path}' is set, and so is a field in it.")
+    else:
+        nested[last] = value
 
 
 def _replaced(node: DataclassInstance, values: Mapping[str, object], path: str) -> DataclassInstance:

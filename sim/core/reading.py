@@ -170,7 +170,7 @@ def read_csv(file: Path, *, what: str) -> list[dict[str, str]]:
         ConfigError: the file cannot be read or is not a table.
     """
     try:
-        table = csv.DictReader(read_text(file, what=what).splitlines(), restval="", restkey="")
+        table = csv.DictReader(io.StringIO(read_text(file, what=what), newline=""), restval="", restkey="")
         return [{key: value for key, value in row.items() if key} for row in table]
     except csv.Error as fault:
         raise ConfigError(f"{what} '{file}' is not a table: {reason_of(fault)}.") from None

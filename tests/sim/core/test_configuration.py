@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import json
 import math
 from dataclasses import dataclass, field
@@ -68,11 +69,22 @@ def test_all_fields_have_a_path_and_each_can_be_set_to_its_own_value() -> None:
         ({"legs.length_m": "inf"}, "'legs.length_m' cannot be 'inf'"),
         ({"legs.length_m": 1e308}, "'legs.length_m' cannot be 1e[+]308"),
         ({"sizes_m": [0.5, float("nan")]}, "'sizes_m' cannot be"),
+        ({"legs.count": 3, "legs": 3}, "'legs' is set, and so is a field in it"),
+        ({"legs": 3, "legs.count": 3}, "'legs.count' is set, and so is a field that contains it"),
     ],
 )
 def test_a_field_that_cannot_be_set_is_refused_by_name(values: dict[str, object], message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         with_fields(Table(), values)
+
+
+def test_a_group_and_a_field_in_it_are_both_set_in_any_order() -> None:
+    given = {"count": 3}
+    expected = Table(legs=Leg(length_m=0.5, count=3))
+    assert with_fields(Table(), {"legs": given, "legs.length_m": 0.5}) == expected
+    assert with_fields(Table(), {"legs.length_m": 0.5, "legs": given}) == expected
+    assert given == {"count": 3}
+    assert with_fields(Table(), {"legs.count": 2, "legs": given}).legs.count == 3  # the later one counts
 
 
 def test_assignments_are_read_as_json_where_they_are_json() -> None:
@@ -93,6 +105,9 @@ def test_a_file_of_settings_may_be_toml_or_json(tmp_path: Path) -> None:
     toml.write_text('top = "oak"\n[legs]\nlength_m = 0.5\n')
     nested.write_text('{"legs": {"length_m": 0.5}, "top": "oak"}')
     assert read_settings(toml) == read_settings(nested) == {"legs.length_m": 0.5, "top": "oak"}
+    marked = tmp_path / "b.TOML"  # as Windows programs write it
+    marked.write_bytes(codecs.BOM_UTF8 + toml.read_bytes())
+    assert read_settings(marked) == read_settings(toml)
     for content in ("[1]", "{", "\x00", "[" * 9999, '{"a": ' * 9999, '{"a": NaN}'):
         nested.write_text(content)
         with pytest.raises(ConfigError, match=r"a\.json"):

@@ -224,3 +224,14 @@ def test_the_memory_for_a_file_depends_on_its_size_and_not_on_the_limit(tmp_path
         tracemalloc.stop()
     with pytest.raises(ConfigError, match="too large"):
         reading.read_bytes(file, what="File", most=1)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_a_cell_of_a_table_may_hold_any_character(end: str, tmp_path: Path) -> None:
+    file = tmp_path / "table.csv"
+    rows = ["name,size", '"a,b",1', "c\u2028d\x0ce,2", "short"]
+    file.write_bytes(end.join(rows).encode())
+    expected = [("a,b", "1"), ("c\u2028d\x0ce", "2"), ("short", "")]
+    assert [(row["name"], row["size"]) for row in reading.read_csv(file, what="Table")] == expected
+    file.write_bytes(f'name,size{end}"a{end}b",1{end}'.encode())
+    assert reading.read_csv(file, what="Table")[0]["name"].splitlines() == ["a", "b"]
