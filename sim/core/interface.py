@@ -264,6 +264,13 @@ def reads_truth(sensor: Any) -> bool:
     return not declared.isdisjoint(TRUE_IMAGES | TRUE_FIELDS)
 
 
+def _require_tuples(spec: object, *names: str) -> None:
+    """Raises ConfigError if a field is one name in place of a tuple of names."""
+    for name in names:
+        if isinstance(value := getattr(spec, name), str):
+            raise ConfigError(f"{type(spec).__name__}.{name} must be a tuple of names, got '{value}'.")
+
+
 def _is_standard(sensor: Any) -> bool:
     """Returns whether a sensor is one of the simulator's own; a user's sensor may have the same name."""
     return type(sensor).__module__.startswith("sim.sensors.")
@@ -315,9 +322,7 @@ class SegmenterSpec:
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", self.kind):
             raise ConfigError(f"SegmenterSpec.kind must consist of A-Z, a-z, 0-9, '_', '-' and '.', got '{self.kind}'.")
-        for name in ("sensors", "truth"):
-            if isinstance(getattr(self, name), str):
-                raise ConfigError(f"SegmenterSpec.{name} must be a tuple of names, got '{getattr(self, name)}'.")
+        _require_tuples(self, "sensors", "truth")
         unknown = sorted(set(self.truth) - TRUE_IMAGES)
         if unknown:
             raise ConfigError(f"SegmenterSpec.truth names '{unknown[0]}'. Available: {', '.join(sorted(TRUE_IMAGES))}.")
@@ -597,6 +602,7 @@ class AgentSpec:
     """Returns a `MapPainter` of viewers, which draws the agent's map; None: viewers draw the true floor plan."""
 
     def __post_init__(self) -> None:
+        _require_tuples(self, "sensors", "words", "pictures")
         if self.own_segmentation:
             object.__setattr__(self, "uses_segmentation", False)
         true = [sensor for sensor in self.sensors if reads_truth(sensor)]

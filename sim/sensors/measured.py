@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sim.core.interface import CLIMB_M, CameraModel
 from sim.gl import mujoco
 from sim.robot.body import PREFIX
-from sim.sensors.ranges import require_range
+from sim.sensors.ranges import require_range, require_whole
 from sim.sensors.sensor import NoiseSettings, SensorContext
 
 _LARGEST = np.finfo(np.float32).max
@@ -35,7 +35,7 @@ class BumperSensor:
     noise: NoiseSettings | None = None
 
     def __post_init__(self) -> None:
-        require_range(self, 1, 360, "sectors")
+        require_whole(self, 1, 360, "sectors")
 
     def space(self, camera: CameraModel) -> spaces.MultiBinary:
         """Returns the space of int8 flags (sectors,)."""

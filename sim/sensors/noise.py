@@ -26,7 +26,7 @@ from sim.sensors.measured import ImuNoise
 from sim.sensors.pose_noise import PoseNoise
 from sim.sensors.rgb_noise import RgbNoise
 from sim.sensors.scan import ScanSensor
-from sim.sensors.scan_noise import ScanNoise
+from sim.sensors.scan_noise import NoisyScan, ScanNoise
 from sim.sensors.sensor import NoiseModel, Sensor
 
 
@@ -197,7 +197,7 @@ class SensorNoise:
     """Applies noise to the observations of one environment, episode by episode. Noise that is off costs nothing."""
 
     def __init__(self, config: NoiseConfig, camera: CameraModel, sensors: Sequence[Sensor]) -> None:
-        """Makes the noise models of the sensors in the observation.
+        """Makes the noise models of the sensors in the observation; a sensor's own noise must change the sensor.
 
         Args:
             config: noise of the standard sensors and of the drive.
@@ -209,13 +209,15 @@ class SensorNoise:
         self._actuation = config.actuation
         names = [part.name for part in fields(config)]
         self._actuation_part = names.index("actuation")
-        parts = [getattr(config, name) for name in names] + [
-            sensor.noise for sensor in sensors if sensor.noise is not None
-        ]
+        own = [(sensor.noise, sensor.name) for sensor in sensors if sensor.noise is not None]
         observed = {sensor.name for sensor in sensors}
         self._models: list[NoiseModel | None] = []  # one for each part; None: off or not observed
-        for part in parts:
+        for part, owner in [*((getattr(config, name), "") for name in names), *own]:
             model = _model_of(part, camera, sensors)
+            if model is not None and owner and owner not in model.sensors:
+                raise ConfigError(
+                    f"Sensor '{owner}' has a noise that does not change it but: {', '.join(model.sensors)}."
+                )
             self._models.append(model if model is not None and observed.issuperset(model.sensors) else None)
         self._streams: list[np.random.Generator] = []
 
@@ -256,6 +258,6 @@ def _model_of(part: Any, camera: CameraModel, sensors: Sequence[Sensor]) -> Nois
     if isinstance(part, ActuationNoise):
         return None
     if isinstance(part, ScanNoise):
-        scans = [sensor.config for sensor in sensors if isinstance(sensor, ScanSensor)]
+        scans = [lidar.config for lidar in sensors if isinstance(lidar, ScanSensor) and lidar.name in NoisyScan.sensors]
         return part.model_of(scans[0]) if scans else None
     return part.model(camera)

@@ -18,7 +18,7 @@ from sim.core.errors import ConfigError
 from sim.core.interface import CameraModel
 from sim.gl import mujoco
 from sim.houses.glass import returning
-from sim.sensors.ranges import require_range
+from sim.sensors.ranges import require_range, require_whole
 from sim.sensors.sensor import NoiseSettings, SensorContext
 
 MAX_RAYS = 10_000
@@ -45,11 +45,9 @@ class ScanConfig:
     """Height of the plane above the floor."""
 
     def __post_init__(self) -> None:
-        require_range(self, 1, MAX_RAYS, "rays")
+        require_whole(self, 1, MAX_RAYS, "rays")
         require_range(self, 0.0, math.inf, "min_range_m", "max_range_m", "height_m")
         require_range(self, 0.0, 2.0 * math.pi, "fov_rad")
-        if self.rays != int(self.rays):
-            raise ConfigError(f"ScanConfig.rays must be a whole number, got {self.rays}.")
         if self.min_range_m >= self.max_range_m:
             raise ConfigError(
                 f"ScanConfig needs min_range_m < max_range_m, got {self.min_range_m} and {self.max_range_m} m."

@@ -19,7 +19,7 @@ from sim.core.interface import MPCAT40, MPCAT40_ID, SEMANTIC_MAP, CameraModel
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, is_hollow, mesh_triangles
 from sim.houses.labels import rendered_geoms
-from sim.sensors.ranges import require_range
+from sim.sensors.ranges import require_range, require_whole
 from sim.sensors.sensor import NoiseSettings, SensorContext
 
 TOP_M = 1.8
@@ -40,7 +40,7 @@ class MapConfig:
     cell_m: float = 0.05
 
     def __post_init__(self) -> None:
-        require_range(self, 1, 2000, "cells")
+        require_whole(self, 1, 2000, "cells")
         require_range(self, 0.001, 10.0, "cell_m")
 
 

@@ -20,10 +20,12 @@ from sim.renderer.gloss import geom_gloss
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.sensors.depth_noise import DepthNoise, NoisyDepth
+from sim.sensors.measured import BumperSensor
 from sim.sensors.noise import NOISE_PRESETS, NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.pose_noise import NoisyPose, PoseNoise
 from sim.sensors.random_fields import smooth_normal
 from sim.sensors.rgb_noise import NoisyRgb, RgbNoise
+from sim.sensors.semantic_map import MapConfig
 from sim.sensors.standard import resolve_sensors
 from sim.world.world import World
 from tests.helpers import wording
@@ -491,6 +493,8 @@ def test_the_true_readings_are_not_changed() -> None:
         (DepthNoise, {"window_px": 1}, "window_px"),
         (DepthNoise, {"edge_radius_px": 1.5}, "whole"),
         (DepthNoise, {"step_1_m": "fine"}, "fine"),
+        (BumperSensor, {"sectors": 6.5}, "sectors must be a whole number"),
+        (MapConfig, {"cells": 20.0}, "cells must be a whole number"),
         (RgbNoise, {"gain_std": 2.0}, "gain_std"),
         (RgbNoise, {"read_std": -1.0}, "read_std"),
         (PoseNoise, {"gps_std_m": math.inf}, "gps_std_m"),

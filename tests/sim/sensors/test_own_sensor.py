@@ -26,6 +26,7 @@ from sim.core.interface import (
     reads_truth,
 )
 from sim.env.objectnav import ObjectNavEnv
+from sim.sensors.cameras import CameraSensor
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.sensor import NoiseSettings, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, DepthSensor, resolve_sensors
@@ -183,6 +184,12 @@ def test_a_standard_sensor_takes_an_own_noise_model(house: Path) -> None:
     )
     assert foggy.max() <= 2.0 < clear.max()
     np.testing.assert_array_equal(foggy[clear <= 2.0], clear[clear <= 2.0])
+
+
+def test_a_noise_that_does_not_change_its_sensor_is_refused(house: Path) -> None:
+    left = CameraSensor(camera="left", image="depth", noise=Fog(2.0))  # the fog of `depth`
+    with pytest.raises(ConfigError, match="'left_depth' has a noise that does not change it but: depth"):
+        ObjectNavEnv(house=house, goal="sofa", sensors=("depth", left))
 
 
 def test_own_sensors_and_noise_do_not_change_the_noise_of_the_others(house: Path) -> None:

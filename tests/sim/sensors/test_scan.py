@@ -19,6 +19,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import AgentSpec, CameraModel, ConfigError, reads_truth
 from sim.env.objectnav import ObjectNavEnv
 from sim.houses.house import House
+from sim.sensors.noise import NoiseConfig, SensorNoise
 from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.scan_noise import NoisyScan, ScanNoise
 from tests.helpers.agents import make_spy
@@ -145,6 +146,7 @@ def test_settings_that_are_not_allowed_are_refused() -> None:
     wrongs: tuple[dict[str, Any], ...] = (
         {"rays": 0},
         {"rays": 1.5},
+        {"rays": 360.0},
         {"min_range_m": 3.0, "max_range_m": 3.0},
         {"fov_rad": 7.0},
     )
@@ -153,6 +155,16 @@ def test_settings_that_are_not_allowed_are_refused() -> None:
             ScanConfig(**wrong)
     with pytest.raises(ConfigError, match=r"ScanNoise.dropout.*\[0.*1\].*2"):
         ScanNoise(dropout=2)
+
+
+def test_noise_has_the_range_of_the_lidar_that_it_changes() -> None:
+    rear = ScanSensor(name="rear", config=ScanConfig(rays=4, max_range_m=2.0))
+    noise = SensorNoise(NoiseConfig(scan=ScanNoise(dropout=1.0)), SMALL, (rear, ScanSensor(config=ScanConfig(rays=4))))
+    noise.begin(np.random.default_rng(0), np.zeros(0, np.float32))
+    readings = {name: np.full(4, 1.0, np.float32) for name in ("rear", "scan")}
+    noisy = noise.apply(readings, {})
+    assert noisy["rear"].tolist() == [1.0] * 4
+    assert noisy["scan"].tolist() == [12.0] * 4
 
 
 def test_a_sensor_of_the_user_cannot_take_its_name(house: Path) -> None:

@@ -77,6 +77,12 @@ def test_a_sensor_of_its_own_is_no_back_door_to_the_truth() -> None:
         AgentSpec(make=agents.make_spy, sensors=(Peeper(),))
 
 
+@pytest.mark.parametrize("field", ["sensors", "words", "pictures"])
+def test_one_name_is_not_a_tuple_of_names(field: str) -> None:
+    with pytest.raises(ConfigError, match=f"AgentSpec.{field} must be a tuple of names, got 'rgb'"):
+        AgentSpec(make=agents.make_spy, **{field: "rgb"})
+
+
 def test_ground_truth_cannot_be_asked_for_without_declaring_it() -> None:
     with pytest.raises(ConfigError, match=r"'semantic'.*uses_ground_truth=True"):
         AgentSpec(make=agents.make_spy, sensors=("semantic",))
