@@ -16,13 +16,15 @@ from numpy.typing import NDArray
 
 from sim.core.geometry.convex import ConvexPolygon
 from sim.core.geometry.grid import GridFrame
-from sim.core.geometry.pose import Pose, as_body_pose
+from sim.core.geometry.pose import BodyPose, Pose, as_body_pose
 from sim.core.interface import MPCAT40_ID, CameraModel
 from sim.world.freespace import covered
 
 CELL_M = 0.1
 """Edge of a cell of the floor."""
 _SAME_FLOOR_M = 0.5
+_TILTED_RAD = math.radians(10.0)
+"""A body leans by less, and the floor that its camera then sees beyond the view of a level one is less than a cell."""
 _FLOOR = MPCAT40_ID["floor"]
 
 
@@ -57,7 +59,7 @@ class SeenFloor:
             return
         body, camera = as_body_pose(camera_pose), self._camera
         eye_m = body.point(0.0, 0.0, camera.height_m)
-        window = self.frame.index_of(self._bounds(eye_m, body.yaw_rad))
+        window = self.frame.index_of(self._bounds(eye_m, body))
         waiting = self._waiting[window]
         x, y = self.frame.axes(window)
         to_x_m, to_y_m, to_z_m = (x - eye_m[0])[None, :], (y - eye_m[1])[:, None], self._floor_z_m - eye_m[2]
@@ -71,11 +73,12 @@ class SeenFloor:
         self.cells[window][rows[shown], cols[shown]] = True
         self._count += int(np.count_nonzero(shown))
 
-    def _bounds(self, eye_m: NDArray[np.float64], yaw_rad: float) -> tuple[float, float, float, float]:
+    def _bounds(self, eye_m: NDArray[np.float64], body: BodyPose) -> tuple[float, float, float, float]:
         """Returns the smallest and largest x and y of the floor in the camera's range; a leaning one sees no farther
-        than a level one by its height."""
-        c, s, far_m = math.cos(yaw_rad), math.sin(yaw_rad), self._camera.max_depth_m + self._camera.height_m
-        corners = [(0.0, 0.0), *((far_m, side * far_m * self._side) for side in (-1.0, 1.0))]
+        than a level one by its height, but one that looks down sees the floor beside and behind its eye."""
+        c, s, far_m = math.cos(body.yaw_rad), math.sin(body.yaw_rad), self._camera.max_depth_m + self._camera.height_m
+        near_m = 0.0 if abs(body.pitch_rad) < _TILTED_RAD else -far_m
+        corners = [(ahead, side * abs(ahead) * self._side) for ahead in (near_m, far_m) for side in (-1.0, 1.0)]
         x = [eye_m[0] + c * ahead - s * sideways for ahead, sideways in corners]
         y = [eye_m[1] + s * ahead + c * sideways for ahead, sideways in corners]
         return min(x), min(y), max(x), max(y)

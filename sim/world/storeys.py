@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
-from sim.houses.geoms import data_at_rest
+from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.labels import Labels
 from sim.robot.body import FLOOR_MASK
 
@@ -51,5 +51,9 @@ def _floor_tops(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float64]:
     floors = floor_geoms(model, labels)
     ids = floors[model.body_weldid[model.geom_bodyid[floors]] == 0]
     rise = np.abs(data.geom_xmat[ids, 6:9] * model.geom_size[ids]).sum(axis=1)
-    rise[model.geom_type[ids] == mujoco.mjtGeom.mjGEOM_PLANE] = 0.0
-    return data.geom_xpos[ids, 2] + rise
+    shape = model.geom_type[ids]
+    rise[shape == mujoco.mjtGeom.mjGEOM_PLANE] = 0.0
+    tops_m = data.geom_xpos[ids, 2] + rise
+    others = ~np.isin(shape, (mujoco.mjtGeom.mjGEOM_BOX.value, mujoco.mjtGeom.mjGEOM_PLANE.value))
+    tops_m[others] = world_boxes(model, data, ids[others])[1][:, 2]
+    return tops_m

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.core.geometry.grid import GridFrame
-from sim.core.geometry.pose import BodyPose, Pose
+from sim.core.geometry.pose import BodyPose, Pose, with_view
 from sim.core.interface import MPCAT40_ID, Action, CameraModel
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -143,3 +143,16 @@ def test_a_camera_that_leans_sees_the_floor_from_where_its_lowest_ray_meets_it(p
     eye_m = body.point(0.0, 0.0, CAMERA.height_m)
     nearest_m = eye_m[0] + eye_m[2] / math.tan(0.5 * CAMERA.vfov_rad + body.pitch_rad)
     assert x_m[np.abs(y_m) < 0.1].min() == pytest.approx(nearest_m, abs=0.1)
+
+
+@pytest.mark.parametrize("pitch_deg", [30.0, 60.0])
+def test_a_tilted_camera_sees_as_much_floor_in_every_direction(pitch_deg):
+    frame = GridFrame(origin_xy_m=(-8.0, -8.0), shape=(640, 640), cell_m=0.025)
+    areas_m2 = []
+    for yaw_rad in np.radians([0.0, 45.0, 50.5, 225.0]).tolist():
+        tilted = BodyPose(0.0, 0.0, yaw_rad, pitch_rad=math.radians(pitch_deg)).axes
+        seen = SeenFloor(frame, np.ones(frame.shape, np.bool_), 0.0, CAMERA)
+        pose = with_view(Pose(0.0, 0.0, yaw_rad), np.array([0.0, 0.0, CAMERA.height_m]), tilted, CAMERA.height_m)
+        seen.look(np.full((480, 640), MPCAT40_ID["floor"], np.uint8), pose)
+        areas_m2.append(seen.area_m2)
+    assert areas_m2 == pytest.approx([areas_m2[0]] * len(areas_m2), rel=0.01)

@@ -169,6 +169,18 @@ def test_a_platform_is_a_level_whatever_the_rule_says_of_storeys():
         assert world.pose.floor_z_m == 0.5
 
 
+@pytest.mark.parametrize("shape", ["cylinder", "mesh"])
+def test_the_top_of_a_floor_of_any_shape_is_a_level(shape: str):
+    spec = room(6, 6, box_floor=True).spec.copy()
+    if shape == "cylinder":
+        spec.worldbody.add_geom(name="floor_01", type=mujoco.mjtGeom.mjGEOM_CYLINDER, pos=(0, 0, 0.2), size=(1, 0.2, 0))
+    else:
+        corners = [(x, y, 0.0) for x in (-1, 1) for y in (-1, 1)] + [(x, y, 0.4) for x in (-0.2, 1) for y in (-1, 0.3)]
+        spec.add_mesh(name="stage", uservert=np.ravel(corners).tolist())
+        spec.worldbody.add_geom(name="floor_01", type=mujoco.mjtGeom.mjGEOM_MESH, meshname="stage")
+    assert World(House("stage", spec)).floor_levels_m == pytest.approx((0.0, 0.4), abs=1e-6)
+
+
 def test_a_rug_is_not_a_storey():
     world = World(with_box(open_floor(), "floor_01", centre_m=(0, 0, 0.005), half_m=(0.5, 0.5, 0.005)))
     world.reset(ORIGIN)
