@@ -157,7 +157,10 @@ def _floor_under(floors: Sequence[Floor], xy_m: NDArray[np.float64], bottom_m: f
 
 
 def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[ConvexPolygon]:
-    """Returns the plan projection of a rendered geom: one convex polygon, or the triangles of a hollow mesh."""
+    """Returns the plan projection of a rendered geom: one convex polygon, or the triangles of a hollow mesh.
+
+    A hollow mesh of upright triangles alone, such as an open tube, has a thin rectangle for each of them.
+    """
     body = geom_polytope(model, data, geom, rendered=True)
     whole = polygon_from_above(body)
     if whole is None:
@@ -170,8 +173,8 @@ def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> li
     missing = hull & ~_raster(corners, low, whole.bounds_m[2:])
     if not _eroded(missing, 1).any():
         return [whole]
-    parts = (ConvexPolygon.of_corners(corner) for corner in corners)
-    return [part for part in parts if part is not None]
+    parts = [part for corner in corners if (part := ConvexPolygon.of_corners(corner)) is not None]
+    return parts or list(map(_upright_polygon, corners))
 
 
 def _upright_polygon(points_m: NDArray[np.float64]) -> ConvexPolygon:

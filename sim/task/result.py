@@ -288,7 +288,8 @@ def failed_metrics(metrics: EpisodeMetrics) -> EpisodeMetrics:
     failed = {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "failure": "misc", "end_reason": "error"}
     if metrics.goals is not None:
         goals = (replace_fields(goal, **failed, goat_success=0.0, goat_spl=0.0) for goal in metrics.goals)
-        failed |= {"composite_success": 0.0, "goals": tuple(goals)}
+        scores = ("composite_success", "second_visit_success", "second_visit_spl", "goat_success", "goat_spl")
+        failed |= {name: 0.0 for name in scores if getattr(metrics, name) is not None} | {"goals": tuple(goals)}
     return replace_fields(metrics, **failed)
 
 

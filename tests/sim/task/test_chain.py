@@ -111,6 +111,16 @@ def test_a_goal_that_was_not_begun_counts_as_a_failure():
     assert (broken.success, broken.goals[0].success, broken.goals[0].end_reason) == (0.0, 0.0, "error")
 
 
+def test_a_chain_that_broke_has_no_score_by_any_rule():
+    world, task = chain(BED, TABLE, BED_AGAIN)
+    reached = act(world, task, FORWARD, FORWARD, STOP, *TO_TABLE, *TO_BED)
+    assert min(reached.goat_success or 0.0, reached.second_visit_success or 0.0) > 0.0
+    broken = failed_metrics(reached)
+    scores = broken.composite_success, broken.second_visit_success, broken.second_visit_spl, broken.goat_success
+    assert (*scores, broken.goat_spl) == (0.0,) * 5
+    assert failed_metrics(act(*chain(BED, TABLE), STOP)).second_visit_success is None
+
+
 def test_a_chain_with_a_goal_that_cannot_be_reached_is_refused():
     world = World(two_storeys())
     task = Task(world)

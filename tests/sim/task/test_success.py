@@ -233,6 +233,21 @@ def test_a_picture_that_is_a_flat_mesh_is_found_from_in_front(turned):
     assert reached.nearest_m(x - 0.5, y) == pytest.approx(0.219 if turned else 0.5, abs=0.01)
 
 
+def test_an_object_of_upright_triangles_alone_is_found_at_its_rim():
+    spec, angles = room(6, 4).spec, np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    points = [(0.3 * np.cos(a), 0.3 * np.sin(a), z) for z in (0.0, 0.5) for a in angles]
+    faces = [face for i in range(24) for face in _quad([i, (i + 1) % 24, 24 + (i + 1) % 24, 24 + i])]
+    spec.add_mesh(
+        name="tube", uservert=np.ravel(points).tolist(), userface=np.ravel(faces).tolist(),
+        inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+    )  # fmt: skip
+    _show_mesh(spec, "stool_00", "tube")
+    reached = region(House("tube", spec), "stool")
+    assert reached.succeeds(-1.2, 0.0)
+    assert not reached.succeeds(-1.4, 0.0)
+    assert reached.nearest_m(-1.3, 0.0) == pytest.approx(1.0, abs=0.01)
+
+
 def test_a_taller_camera_sees_over_a_wall_that_blocks_the_default_one():
     low_wall = two_rooms(high_m=1.2)
     assert not region(low_wall, "bed").succeeds(-0.4, 0.0)
