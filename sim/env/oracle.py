@@ -112,9 +112,8 @@ class Oracle:
         action, task = self._follower.next_action(), self._env.scene.task
         pose = task.world.pose
         if action is Action.STOP and not task.truth.succeeds_now(self._goal, pose.x_m, pose.y_m, self._floor_z_m):
-            self._head_for(
-                task, task.truth.target_now(self._goal, self._floor_z_m)
-            )  # the robot pushed a door or an object
+            # The robot pushed a door or an object.
+            self._head_for(task, task.truth.target_now(self._goal, self._floor_z_m))
             action = self._follower.next_action()
         return Action.TURN_LEFT if action is None else action
 
@@ -189,12 +188,13 @@ class Follower:
         queue: list[tuple[float, int, Node]] = [(0.0, next(tie), begin)]
         done: set[Key] = set()
         end, nearest_m, reached = begin, math.inf, False
+        on_grid = bool(self._frame.inside(self._frame.to_cells([begin[:2]]))[0])  # all other nodes are
         while queue and len(done) < MAX_EXPANSIONS:
             node = heapq.heappop(queue)[2]
             if _key(node) in done:
                 continue
             done.add(_key(node))
-            if self._goal_cells[tuple(self._frame.to_cells(node[:2]))]:
+            if (on_grid or node is not begin) and self._goal_cells[tuple(self._frame.to_cells(node[:2]))]:
                 end, reached = node, True
                 break
             for step_m, after, left_m in self._steps(node, whole=whole):

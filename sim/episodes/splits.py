@@ -83,10 +83,13 @@ class Split:
         Raises:
             HouseError: there is no such house, or it cannot be generated here.
         """
+        self._require_house(name)
+        return self.house_paths[name] if self.house_list is None else self.house_list.fetch(name)
+
+    def _require_house(self, name: str) -> None:
         if name not in self.house_paths:
             there_is = reprlib.repr(list(self.houses)) if len(self.houses) > 40 else ", ".join(self.houses)
             raise HouseError(f"Split '{self.name}' has no house '{name}'. It has: {there_is}.")
-        return self.house_paths[name] if self.house_list is None else self.house_list.fetch(name)
 
     def load_house(self, name: str) -> House:
         """Returns a house.
@@ -105,8 +108,9 @@ class Split:
         """Returns the settings that a house's sidecar fixes; empty if there is no sidecar, or if it holds label rules.
 
         Raises:
-            HouseError: the file violates the format of `sim.houses.sidecar`.
+            HouseError: there is no such house, or the file violates the format of `sim.houses.sidecar`.
         """
+        self._require_house(house)
         return house_sidecar(self.house_paths[house], self.labels_path)
 
     def episode(self, episode_id: str) -> Episode:

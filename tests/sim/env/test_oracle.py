@@ -14,7 +14,7 @@ from sim.gl import mujoco
 from sim.task.objectnav import Task
 from sim.task.result import EpisodeMetrics
 from sim.world.world import World
-from tests.helpers.worlds import room, with_box, with_movable
+from tests.helpers.worlds import open_floor, room, with_box, with_movable
 
 
 @dataclass
@@ -116,3 +116,15 @@ def test_the_oracle_goes_on_where_the_goal_was_pushed_away():
         task.observe(action, world.move(action))
     assert task.metrics().success == 1.0
     assert world.pose.x_m > 2.0
+
+
+def test_the_oracle_turns_where_the_robot_is_beyond_the_known_floor():
+    world = World(with_box(open_floor(), "bed_00", centre_m=(3.0, 0, 0.25), half_m=(0.5, 0.5, 0.25)))
+    task = Task(world)
+    world.reset(Pose(0.0, 0.0, 0.0))
+    task.begin("bed", Pose(0.0, 0.0, 0.0))
+    oracle = Oracle(RunningEpisode(world, task))
+    oracle.reset("bed", seed=0)
+    for x_m in (30.0, -30.0):  # the grid ends 10 m from the bed
+        world.reset(Pose(x_m, 0.0, 0.0))
+        assert oracle.choose() is Action.TURN_LEFT

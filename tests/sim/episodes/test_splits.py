@@ -247,6 +247,8 @@ def test_an_unknown_episode_or_house_is_refused_with_the_closest_name(folder):
         split.episode("tiny_00003")
     with pytest.raises(HouseError, match=wording.IT_HAS_A_B):
         split.load_house("c")
+    with pytest.raises(HouseError, match="has no house 'attic'"):
+        load_split(folder).sidecar("attic")
 
 
 def test_one_house_is_a_split_without_episodes(folder):
