@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from sim.houses.references import SHARED_TEXTURES, asset_path
 
 _IDENTITY_QUAT = ' quat="1 0 0 0"'
 _QUAT = re.compile(r' quat="([^"]*)"')
+_TEXTURE_DIR = re.compile(r'texturedir="[^"]*"')
 _LEADING_ZERO = re.compile(r'(?<=[" -])0\.')
 _INDENT = re.compile(r"\n\s+")
 _QUAT_DIGITS = 4
@@ -29,7 +31,7 @@ def house_text(spec: mujoco.MjSpec, textures: str | None = None) -> str:
     """
     text = spec.to_xml()
     if textures is not None:
-        text = text.replace(f'texturedir="{spec.texturedir}"', f'texturedir="{textures}"', 1)
+        text = _TEXTURE_DIR.sub(lambda _: f'texturedir="{html.escape(textures)}"', text, count=1)
     text = _QUAT.sub(_short_quat, text.replace(_IDENTITY_QUAT, ""))
     return _INDENT.sub("\n", _LEADING_ZERO.sub(".", text))
 

@@ -64,7 +64,7 @@ def play_episode(
         The result without the episode and the agent.
 
     Raises:
-        AgentError: the agent's `reset` failed; a failure of `act` ends the episode as `error`.
+        AgentError: the agent's `reset` or `model_use` failed; a failure of `act` ends the episode as `error`.
         EpisodeError, HouseError: the episode cannot begin.
     """
     name = type(agent).__name__ if name is None else name
@@ -233,7 +233,11 @@ def confidence_of(agent: Agent, where: str) -> float | None:
 
 
 def model_use_of(agent: Agent, name: str) -> ModelUse | UnsetType:
-    """Returns what an agent asked of a model; UNSET if it does not state it, or states something else."""
+    """Returns what an agent asked of a model; UNSET if it does not state it.
+
+    Raises:
+        AgentError: `model_use` failed, or returned something else.
+    """
     if not isinstance(agent, StatesModelUse):
         return UNSET
     where = f"Agent '{name}', model_use"

@@ -12,6 +12,7 @@ from sim.core.errors import HouseError
 from sim.gl import mujoco
 from sim.houses.house import Room, read_rooms
 from sim.houses.load import load_house
+from sim.houses.writing import house_text
 from tests.helpers import wording
 
 FLOOR = '<geom name="floor_00" type="plane" size="5 5 1"/>'
@@ -155,3 +156,12 @@ def test_a_room_turned_a_quarter_covers_its_turned_box():
     assert room.contains(0.9, 1.9)
     assert not room.contains(1.9, 0.9)
     assert room.floor_z_m == pytest.approx(3.0)
+
+
+def test_the_folder_of_the_textures_may_have_any_name():
+    spec = mujoco.MjSpec.from_string(
+        f"<mujoco><compiler texturedir='a &amp; b'/><worldbody>{FLOOR}</worldbody></mujoco>"
+    )
+    spec.compile()
+    for folder in ("../textures", '/home/R&D\'s <"house">'):
+        assert mujoco.MjSpec.from_string(house_text(spec, folder)).texturedir == folder
