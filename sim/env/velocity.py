@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import reprlib
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
     Args:
         period_s: time for which a command is held, a whole multiple of the tick of the drive (20 ms).
         time_limit_s: simulated time of an episode; the default is what 500 discrete actions take at most.
-        options: those of `ObjectNavEnv`, except for `max_steps` and `look`.
+        options: those of `ObjectNavEnv`, except for `max_steps`, also that of `task`, and `look`.
 
     Raises:
         ConfigError: see `ObjectNavEnv`; or a period, a limit or an action that is not allowed.
@@ -45,7 +46,9 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - declared by Gymnasium
 
     def __init__(self, *, period_s: float = 0.1, time_limit_s: float = MAX_STEPS * ACTION_S, **options: Any) -> None:
-        if options.get("max_steps") is not None:
+        task = options.get("task")
+        of_task = task.get("max_steps") if isinstance(task, Mapping) else getattr(task, "max_steps", None)
+        if options.get("max_steps") is not None or of_task not in (None, MAX_STEPS):
             raise ConfigError("The limit of an episode driven by velocities is time_limit_s, in place of max_steps.")
         if options.get("look"):
             raise ConfigError("look=True adds discrete actions, and this environment takes velocities.")

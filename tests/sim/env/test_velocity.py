@@ -22,6 +22,7 @@ from sim.env.velocity import ObjectNavVelocityEnv
 from sim.houses.house import House
 from sim.robot.config import DriveConfig, RobotConfig
 from sim.robot.velocity import Velocity
+from sim.task.config import TaskConfig
 from sim.task.metrics import TRAPPED_WINDOW_STEPS, stayed_near
 from sim.task.trajectory import by_action
 from sim.world.world import World
@@ -178,6 +179,8 @@ def test_what_is_not_allowed_is_refused(env: ObjectNavVelocityEnv, tmp_path: Pat
         {"period_s": 0.0},
         {"time_limit_s": math.inf},
         {"max_steps": 5},
+        {"task": {"max_steps": 5}},
+        {"task": TaskConfig(max_steps=5)},
     )
     for wrong in wrongs:
         with pytest.raises(ConfigError, match=r"period_s|time_limit_s"):
