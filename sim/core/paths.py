@@ -8,7 +8,7 @@ import os
 import platform
 from pathlib import Path
 
-from sim.core.errors import HouseError
+from sim.core.errors import ConfigError, HouseError
 
 CACHE_VARIABLE = "STUBBORN_CACHE_DIR"
 _PACKAGE = Path(__file__).resolve().parents[1]
@@ -19,12 +19,17 @@ def cache_dir() -> Path:
 
     It is `$STUBBORN_CACHE_DIR`, else `stubborn-objectnav` in `$XDG_CACHE_HOME`, else in `~/.cache` (XDG Base Directory
     Specification 0.8).
+
+    Raises:
+        ConfigError: the user has no home folder, as in some containers, and no variable names another one.
     """
-    chosen = os.environ.get(CACHE_VARIABLE)
-    if chosen:
-        return Path(chosen).expanduser()
-    base = os.environ.get("XDG_CACHE_HOME", "")
-    return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "stubborn-objectnav"
+    chosen, base = os.environ.get(CACHE_VARIABLE), os.environ.get("XDG_CACHE_HOME", "")
+    try:
+        if chosen:
+            return Path(chosen).expanduser()
+        return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "stubborn-objectnav"
+    except RuntimeError as error:
+        raise ConfigError(f"There is no folder for the cache: {error} Set {CACHE_VARIABLE} to one.") from None
 
 
 def assets_dir() -> Path:

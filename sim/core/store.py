@@ -65,7 +65,7 @@ def kept(key: str | None, kind: Any, make: Callable[[], T]) -> T:
         return make()
     try:
         file = cache_dir() / _FOLDER / f"{key}.bin"
-    except RuntimeError:  # the user has no home folder
+    except ConfigError:  # the user has no home folder
         return make()
     try:
         content = memoryview(file.read_bytes())

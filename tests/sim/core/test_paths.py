@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from sim.core.paths import hash_of_packages
+from sim.core.errors import ConfigError
+from sim.core.paths import CACHE_VARIABLE, cache_dir, hash_of_packages
 
 
 @pytest.fixture
@@ -43,3 +44,9 @@ def test_parameters_can_be_excluded(package: Path) -> None:
     assert hash_of_packages(package, parameters=False) == before
     (package / "run.py").write_text("2")
     assert hash_of_packages(package, parameters=False) != before
+
+
+def test_without_a_home_folder_the_variable_of_the_cache_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, "~no-such-user/cache")
+    with pytest.raises(ConfigError, match=f"no folder for the cache.*Set {CACHE_VARIABLE} to one"):
+        cache_dir()
