@@ -165,10 +165,11 @@ def new_secret(file: Path) -> str:
 
     Raises:
         ConfigError: the file exists.
+        OSError: the folder cannot be made, or the file cannot be written.
     """
     secret = secrets.token_hex(32)
+    file.parent.mkdir(parents=True, exist_ok=True)
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
         handle = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError:
         raise ConfigError(f"'{file}' exists: it may be the secret of another split; name another file.") from None

@@ -111,6 +111,8 @@ def test_the_hash_of_a_secret_does_not_hold_it_and_a_new_one_is_for_its_owner_on
     assert secret not in sealing.digest_of(secret)
     with pytest.raises(ConfigError, match=wording.IT_MAY_BE_THE_SECRET_OF_ANOTHER_SPLIT):
         sealing.new_secret(file)
+    with pytest.raises(FileExistsError, match="secret"):
+        sealing.new_secret(file / "below")
 
 
 @pytest.mark.parametrize("text", ["", "abc", "0" * 63, "g" * 64, "0" * 2000, "0" * 64, "01" * 32])
