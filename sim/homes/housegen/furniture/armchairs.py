@@ -10,7 +10,7 @@ import math
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, polar
 from sim.homes.housegen.furniture.shapes import Ring, arc_wall, chamfered_box, loft
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -20,8 +20,8 @@ def club(w: Workbench) -> None:
     width, depth, height = w.width(0.74, 0.92), w.depth(0.76, 0.90), w.length(0.74, 0.86)
     seat, arm, back = w.length(0.40, 0.44), w.length(0.11, 0.16), 0.18
     cover, foot = (w.look("leather") if w.chance(0.4) else w.look("fabric")), w.look("wood")
-    x0, x1 = -0.5 * depth, 0.5 * depth
-    w.box((x0 + 0.02, x1 - 0.02), (-0.5 * width + 0.02, 0.5 * width - 0.02), (0.09, seat - 0.12), cover)
+    x0, x1 = centred(depth)
+    w.box((x0 + 0.02, x1 - 0.02), centred(width, 0.02), (0.09, seat - 0.12), cover)
     w.mesh(
         chamfered_box((back, width - 2 * arm + 0.02, height - 0.10), 0.04),
         (x0 + 0.5 * back, 0.0, 0.5 * (height + 0.10)),
@@ -33,8 +33,8 @@ def club(w: Workbench) -> None:
             chamfered_box((depth, arm, top - 0.09), 0.035), (0.0, side * 0.5 * (width - arm), 0.5 * (top + 0.09)), cover
         )
     w.mesh(chamfered_box((depth - back, width - 2 * arm, 0.14), 0.03), (0.5 * back, 0.0, seat - 0.06), cover)
-    w.legs((x0 + 0.03, x1 - 0.03), (-0.5 * width + 0.03, 0.5 * width - 0.03), (0.0, 0.10), 0.05, foot)
-    w.top((x0 + back, x1), (-0.5 * width + arm, 0.5 * width - arm), seat + 0.01, "seat")
+    w.legs((x0 + 0.03, x1 - 0.03), centred(width, 0.03), (0.0, 0.10), 0.05, foot)
+    w.top((x0 + back, x1), centred(width, arm), seat + 0.01, "seat")
 
 
 def wingback(w: Workbench) -> None:
@@ -52,8 +52,8 @@ def wingback(w: Workbench) -> None:
     )
     for side in BOTH_SIDES:
         y = side * (half - 0.06)
-        w.box((x0 + 0.12, x1 - 0.06), (y - 0.045, y + 0.045), (0.20, 0.58), cloth)
-        w.rod((x0 + 0.14, y, 0.60), (x1 - 0.05, y, 0.60), 0.06, cloth)
+        w.box((x0 + 0.12, x1 - 0.06), around(y, 0.045), (0.20, 0.58), cloth)
+        w.rod_x((y, 0.60), (x0 + 0.14, x1 - 0.05), 0.06, cloth)
         w.mesh(
             chamfered_box((0.24, 0.06, height - 0.70), 0.025),
             (x0 + 0.20, side * (half - 0.08), 0.5 * (height + 0.62)),
@@ -103,7 +103,7 @@ def rocker(w: Workbench) -> None:
         w.bar((0.26, y, 0.65), (-0.24, y, 0.62), 0.07, 0.022, wood)
     w.box((-0.24, 0.25), (-half, half), (seat - 0.03, seat), wood, tilt=-0.05)
     w.mesh(chamfered_box((0.42, 2 * half - 0.10, 0.05), 0.02), (0.01, 0.0, seat + 0.02), cloth, tilt=-0.05)
-    w.rod((-0.355, -half + 0.02, height - 0.04), (-0.355, half - 0.02, height - 0.04), 0.022, wood)
+    w.rod_y((-0.355, height - 0.04), (-half + 0.02, half - 0.02), 0.022, wood)
     for i in range(5):
         y = (i - 2) * (half - 0.06) / 2.5
         w.bar((-0.205, y, seat - 0.01), (-0.355, y, height - 0.03), 0.035, 0.012, wood)
@@ -120,7 +120,7 @@ def tub(w: Workbench) -> None:
     angles = [math.pi + (i - 8) * 0.275 for i in range(17)]
     tops = [height - 0.15 * (abs(i - 8) / 8) ** 2 for i in range(17)]
     w.mesh(arc_wall(r, 0.10, 0.10, angles, tops), (0.0, 0.0, 0.0), cloth, solid=False)
-    w.top((-0.5 * r, 0.6 * r), (-0.5 * r, 0.5 * r), seat, "seat")
+    w.top((-0.5 * r, 0.6 * r), centred(r), seat, "seat")
 
 
 def channel_chair(w: Workbench) -> None:
@@ -131,9 +131,9 @@ def channel_chair(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (0.05, seat), r - 0.04, cloth)
     for n in range(9):
         a = math.pi + (n - 4) * 0.36
-        x, y, top = (r - 0.075) * math.cos(a), (r - 0.075) * math.sin(a), height - 0.02 * abs(n - 4)
+        x, y, top = (*polar(r - 0.075, a), height - 0.02 * abs(n - 4))
         w.rod((x, y, 0.14), (x, y, top - 0.075), 0.075, cloth, round_ends=True)
-    w.top((-0.4 * r, 0.7 * r), (-0.5 * r, 0.5 * r), seat, "seat")
+    w.top((-0.4 * r, 0.7 * r), centred(r), seat, "seat")
 
 
 def egg_chair(w: Workbench) -> None:
@@ -165,7 +165,7 @@ def _star_base(w: Workbench, look: Look, top: float) -> None:
     dark, radius, low = w.look("rubber"), 0.34, 0.02
     for i in range(4):
         angle = math.tau * i / 4 + 0.3
-        x, y = radius * math.cos(angle), radius * math.sin(angle)
+        x, y = polar(radius, angle)
         w.bar((0.0, 0.0, low + 0.03), (x, y, low), 0.04, 0.025, look)
         w.cylinder((x, y), (0.0, low), 0.014, dark)
     w.cylinder((0.0, 0.0), (low, top), 0.026, w.look("chrome") if w.chance(0.5) else look)
@@ -179,12 +179,12 @@ def cane_chair(w: Workbench) -> None:
     for side in BOTH_SIDES:
         y = side * (half - 0.02)
         for x in (x0 + 0.04, x1 - 0.04):
-            w.box((x - 0.02, x + 0.02), (y - 0.02, y + 0.02), (0.0, 0.60), wood)
-        w.box((x0 + 0.02, x1 - 0.02), (y - 0.025, y + 0.025), (0.58, 0.62), wood)
-        w.box((x0 + 0.05, x1 - 0.05), (y - 0.006, y + 0.006), (seat - 0.12, 0.585), cane)
+            w.box(around(x, 0.02), around(y, 0.02), (0.0, 0.60), wood)
+        w.box((x0 + 0.02, x1 - 0.02), around(y, 0.025), (0.58, 0.62), wood)
+        w.box((x0 + 0.05, x1 - 0.05), around(y, 0.006), (seat - 0.12, 0.585), cane)
     w.box((x0 + 0.03, x1 - 0.03), (-half + 0.03, half - 0.03), (seat - 0.14, seat - 0.10), wood)
     w.box((x0 + 0.02, x0 + 0.05), (-half + 0.02, half - 0.02), (seat - 0.12, height), cane)
-    w.box((x0 + 0.01, x0 + 0.06), (-half + 0.01, half - 0.01), (height - 0.02, height + 0.02), wood)
+    w.box((x0 + 0.01, x0 + 0.06), (-half + 0.01, half - 0.01), around(height, 0.02), wood)
     w.mesh(chamfered_box((depth - 0.12, width - 0.12, 0.12), 0.035), (0.03, 0.0, seat - 0.05), cloth)
     w.mesh(chamfered_box((0.13, width - 0.14, 0.36), 0.04), (x0 + 0.13, 0.0, seat + 0.19), cloth, tilt=-0.12)
     w.top((x0 + 0.2, x1 - 0.03), (-half + 0.08, half - 0.08), seat + 0.01, "seat")

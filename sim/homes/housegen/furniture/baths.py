@@ -12,21 +12,21 @@ import math
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look, MeshShape
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, drape, loft, named_mesh
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
 def _shower_set(w: Workbench, x: float, y: float, tray: float, metal: Look, *, rain: bool) -> None:
     """Adds a slim tower at x, from the tray up, with mixer, rail and a rain head on an arm or a hand shower."""
-    w.box((x, x + 0.025), (y - 0.07, y + 0.07), (tray - 0.005, 2.0), w.look("ceramic"), solid=False)
+    w.box((x, x + 0.025), around(y, 0.07), (tray - 0.005, 2.0), w.look("ceramic"), solid=False)
     x += 0.02
-    w.rod((x + 0.05, y, 1.1), (x + 0.05, y, 1.96), 0.009, metal, solid=False)
+    w.cylinder((x + 0.05, y), (1.1, 1.96), 0.009, metal, solid=False)
     for z in (1.1, 1.95):
-        w.rod((x, y, z), (x + 0.05, y, z), 0.012, metal, solid=False)
-    w.box((x, x + 0.05), (y - 0.12, y + 0.12), (1.02, 1.07), metal, solid=False)
+        w.rod_x((y, z), (x, x + 0.05), 0.012, metal, solid=False)
+    w.box((x, x + 0.05), around(y, 0.12), (1.02, 1.07), metal, solid=False)
     if rain:
-        w.rod((x, y, 1.97), (x + 0.32, y, 1.97), 0.010, metal, solid=False)
+        w.rod_x((y, 1.97), (x, x + 0.32), 0.010, metal, solid=False)
         w.cylinder((x + 0.32, y), (1.94, 1.97), 0.12, metal, solid=False)
     else:
         w.rod((x + 0.05, y, 1.80), (x + 0.13, y, 1.88), 0.012, metal, solid=False)
@@ -48,7 +48,7 @@ def _pane(w: Workbench, a: tuple[float, float], b: tuple[float, float], low: flo
     """Adds an upright pane of glass between two points of the plan."""
     x, y, half = 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * math.dist(a, b)
     turn = math.atan2(b[1] - a[1], b[0] - a[0])
-    w.box((x - half, x + half), (y - 0.003, y + 0.003), (low, high), glass, turn=turn)
+    w.box(around(x, half), around(y, 0.003), (low, high), glass, turn=turn)
 
 
 def _hollow(
@@ -88,7 +88,7 @@ def freestanding(w: Workbench) -> None:
         Ring(0.14, 0.6 * rx, 0.7 * ry, power=2.4),
     ]
     w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), white)
-    w.rod((-rx - 0.06, 0.3, 0.0), (-rx - 0.06, 0.3, 0.92), 0.018, metal)
+    w.cylinder((-rx - 0.06, 0.3), (0.0, 0.92), 0.018, metal)
     w.rod((-rx - 0.06, 0.3, 0.91), (-rx + 0.12, 0.3, 0.89), 0.014, metal, round_ends=True)
     w.cylinder((-rx - 0.06, 0.3), (0.0, 0.015), 0.05, metal)
 
@@ -102,7 +102,7 @@ def walk_in(w: Workbench) -> None:
     w.box((-0.06, 0.06), (-0.06, 0.06), (0.035, 0.038), metal, solid=False)
     w.box((x[1] - 0.012, x[1] - 0.002), (y[0], y[1] - 0.45), (0.035, high), w.look("glass"))
     w.box((x[1] - 0.022, x[1] + 0.008), (y[0], y[1] - 0.45), (0.035, 0.055), metal)
-    w.rod((x[1] - 0.007, y[1] - 0.47, high - 0.02), (x[0], y[1] - 0.47, high - 0.02), 0.010, metal, solid=False)
+    w.rod_x((y[1] - 0.47, high - 0.02), (x[1] - 0.007, x[0]), 0.010, metal, solid=False)
     w.box((x[1] - 0.02, x[1] + 0.006), (y[1] - 0.475, y[1] - 0.45), (0.035, high), metal)
     _shower_set(w, x[0], y[0] + 0.40, 0.035, metal, rain=True)
 
@@ -113,9 +113,9 @@ def curtained(w: Workbench) -> None:
     metal, cloth = w.look("chrome"), w.look("curtain")
     w.mesh(chamfered_box((2 * half, 2 * half, 0.13), 0.02), (0.0, 0.0, 0.065), w.look("ceramic"))
     edge = half - 0.03
-    w.rod((edge, -half, high), (edge, edge, high), 0.012, metal, solid=False)
-    w.rod((-half, edge, high), (edge, edge, high), 0.012, metal, solid=False)
-    w.rod((edge, edge, 0.12), (edge, edge, high), 0.014, metal)
+    w.rod_y((edge, high), (-half, edge), 0.012, metal, solid=False)
+    w.rod_x((edge, high), (-half, edge), 0.012, metal, solid=False)
+    w.cylinder((edge, edge), (0.12, high), 0.014, metal)
     span = w.length(0.55, 0.75) * 2 * half
     w.mesh(drape(span, high - 0.20, 0.06, 8), (edge - 0.03, edge - 0.03 - 0.5 * span, 0.19), cloth, solid=False)
     w.mesh(drape(0.3, high - 0.20, 0.07, 5), (-half + 0.18, edge + 0.03, 0.19), cloth, solid=False, turn=-0.5 * math.pi)
@@ -130,14 +130,14 @@ def cubicle(w: Workbench) -> None:
     w.box((-half, -half + 0.02), (-half, half), (0.15, high), white)
     for side in BOTH_SIDES:
         edge = side * (half - 0.01)
-        w.box((-half + 0.02, half), (edge - 0.01, edge + 0.01), (0.15, high), white if side < 0 else glass)
+        w.box((-half + 0.02, half), around(edge, 0.01), (0.15, high), white if side < 0 else glass)
     w.box((-half, half), (-half, half), (high - 0.02, high + 0.05), white)
     for low, front in ((-half + 0.02, half - 0.012), (-0.02, half - 0.028)):
         span = (low, low + half + 0.01)
-        w.box((front - 0.004, front + 0.004), span, (0.17, high - 0.02), glass)
+        w.box(around(front, 0.004), span, (0.17, high - 0.02), glass)
         for c in span:
-            w.box((front - 0.010, front + 0.010), (c - 0.012, c + 0.012), (0.15, high), metal)
-    w.rod((half + 0.01, -0.02, 0.95), (half + 0.01, -0.02, 1.25), 0.012, metal, solid=False)
+            w.box(around(front, 0.010), around(c, 0.012), (0.15, high), metal)
+    w.cylinder((half + 0.01, -0.02), (0.95, 1.25), 0.012, metal, solid=False)
     _shower_set(w, -half + 0.02, 0.0, 0.15, metal, rain=False)
 
 
@@ -207,8 +207,8 @@ def clawfoot(w: Workbench) -> None:
             w.rod(knee, ankle, 0.024, metal, round_ends=True)
             w.ellipsoid((sx * 0.66 * rx, sy * 0.66 * ry, 0.028), (0.046, 0.04, 0.028), metal)
     for y in (0.22, 0.36):
-        w.rod((-rx - 0.04, y, 0.0), (-rx - 0.04, y, high + 0.12), 0.012, metal)
-    w.rod((-rx - 0.04, 0.20, high + 0.12), (-rx - 0.04, 0.38, high + 0.12), 0.020, metal, round_ends=True)
+        w.cylinder((-rx - 0.04, y), (0.0, high + 0.12), 0.012, metal)
+    w.rod_y((-rx - 0.04, high + 0.12), (0.20, 0.38), 0.020, metal, round_ends=True)
     w.rod((-rx - 0.04, 0.29, high + 0.12), (-rx + 0.10, 0.29, high + 0.08), 0.013, metal, round_ends=True)
 
 
@@ -220,11 +220,7 @@ def built_in(w: Workbench) -> None:
     for i in range(3):
         c = (i - 1) * width / 3
         w.box(
-            (0.5 * depth - 0.004, 0.5 * depth + 0.010),
-            (c - 0.15 * width, c + 0.15 * width),
-            (0.05, high - 0.09),
-            white,
-            solid=False,
+            (0.5 * depth - 0.004, 0.5 * depth + 0.010), around(c, 0.15 * width), (0.05, high - 0.09), white, solid=False
         )
     parts.mixer_tap(w, (-0.5 * depth + 0.035, 0.5 * width - 0.42, high), 0.16, 0.12, chrome)
     for dy in (-0.08, 0.08):
@@ -259,12 +255,12 @@ def corner_cabin(w: Workbench) -> None:
         w.box((-half, half), (low, top), (0.09, high), glass)
         for x in (-half + 0.012, half - 0.012):
             y = sy * (half - 0.012)
-            w.box((x - 0.012, x + 0.012), (y - 0.012, y + 0.012), (0.06, high + 0.015), metal)
+            w.box(around(x, 0.012), around(y, 0.012), (0.06, high + 0.015), metal)
     for z in (0.08, high):
-        w.box((half - 0.024, half), (-half, half), (z - 0.012, z + 0.012), metal)
-    w.rod((half + 0.03, 0.10, 0.95), (half + 0.03, 0.10, 1.20), 0.010, metal, solid=False)
+        w.box((half - 0.024, half), (-half, half), around(z, 0.012), metal)
+    w.cylinder((half + 0.03, 0.10), (0.95, 1.20), 0.010, metal, solid=False)
     for z in (0.96, 1.19):
-        w.rod((half - 0.005, 0.10, z), (half + 0.03, 0.10, z), 0.006, metal, solid=False)
+        w.rod_x((0.10, z), (half - 0.005, half + 0.03), 0.006, metal, solid=False)
     _shower_set(w, -half, -0.05, 0.07, metal, rain=False)
 
 
@@ -288,7 +284,7 @@ def curved_cabin(w: Workbench) -> None:
         for z in (0.13, high):
             w.bar((*a, z), (*b, z), 0.022, 0.022, metal)
     for x, y in (points[0], points[2], points[3], points[-1]):
-        w.box((x - 0.011, x + 0.011), (y - 0.011, y + 0.011), (0.12, high), metal)
+        w.box(around(x, 0.011), around(y, 0.011), (0.12, high), metal)
     _shower_set(w, -half, -0.2 * half, 0.12, metal, rain=True)
 
 
@@ -305,7 +301,7 @@ def pentagon_cabin(w: Workbench) -> None:
         for z in (0.07, high):
             w.bar((*a, z), (*b, z), 0.02, 0.02, metal)
     for x, y in points:
-        w.box((x - 0.012, x + 0.012), (y - 0.012, y + 0.012), (0.05, high), metal)
+        w.box(around(x, 0.012), around(y, 0.012), (0.05, high), metal)
     handle = (0.475 * half + 0.035, 0.475 * half + 0.035)
     w.rod((*handle, 0.9), (*handle, 1.2), 0.011, metal, solid=False)
     for z in (0.91, 1.19):

@@ -10,7 +10,7 @@ import itertools
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
 from sim.homes.housegen.furniture.shapes import chamfered_box, pillow
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -47,9 +47,7 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float) -
     for i in range(count):
         y = (i - 0.5 * (count - 1)) * width / count
         w.mesh(pillow((0.46, pitch, 0.16), 4.0), (x0 + 0.27, y, top + 0.055), linen, tilt=-0.12)
-    w.top(
-        (x0 + length - cover + 0.3, x0 + length - 0.15), (-0.5 * width + 0.15, 0.5 * width - 0.15), top + 0.045, "seat"
-    )
+    w.top((x0 + length - cover + 0.3, x0 + length - 0.15), centred(width, 0.15), top + 0.045, "seat")
 
 
 def panel(w: Workbench) -> None:
@@ -60,9 +58,9 @@ def panel(w: Workbench) -> None:
     w.box((-0.05, 0.0), (-half, half), (0.18, head), wood)
     w.box((-0.065, 0.015), (-half - 0.02, half + 0.02), (head - 0.02, head + 0.03), wood)
     for side in BOTH_SIDES:
-        w.box((-0.06, 0.01), (side * half - 0.035, side * half + 0.035), (0.0, head), wood)
-        w.box((0.0, x1), (side * half - 0.015, side * half + 0.015), (0.20, top - 0.12), wood)
-        w.box((x1 - 0.02, x1 + 0.05), (side * half - 0.035, side * half + 0.035), (0.0, top + 0.04), wood)
+        w.box((-0.06, 0.01), around(side * half, 0.035), (0.0, head), wood)
+        w.box((0.0, x1), around(side * half, 0.015), (0.20, top - 0.12), wood)
+        w.box((x1 - 0.02, x1 + 0.05), around(side * half, 0.035), (0.0, top + 0.04), wood)
     w.box((x1, x1 + 0.03), (-half, half), (0.18, top - 0.04), wood)
     w.box((0.0, x1), (-half, half), (0.22, top - _MATTRESS + 0.01), wood)
     _bedding(w, 0.01, length, width, top)
@@ -104,16 +102,16 @@ def metal_frame(w: Workbench) -> None:
     half = 0.5 * width + 0.02
     for x, high in ((-0.02, head), (length + 0.02, top + 0.12)):
         for side in BOTH_SIDES:
-            w.rod((x, side * half, 0.0), (x, side * half, high - 0.08), 0.017, iron)
+            w.cylinder((x, side * half), (0.0, high - 0.08), 0.017, iron)
             w.ball((x, side * half, high - 0.07), 0.026, w.look("brass"))
             w.rod((x, side * half, high - 0.09), (x, side * 0.4 * half, high - 0.015), 0.013, iron, round_ends=True)
-        w.rod((x, -0.4 * half, high - 0.015), (x, 0.4 * half, high - 0.015), 0.013, iron)
-        w.rod((x, -half, top - 0.10), (x, half, top - 0.10), 0.012, iron)
+        w.rod_y((x, high - 0.015), (-0.4 * half, 0.4 * half), 0.013, iron)
+        w.rod_y((x, top - 0.10), (-half, half), 0.012, iron)
         for i in range(3):
             y = (i - 1) * 0.38 * half
-            w.rod((x, y, top - 0.10), (x, y, high - 0.02), 0.008, iron)
+            w.cylinder((x, y), (top - 0.10, high - 0.02), 0.008, iron)
     for side in BOTH_SIDES:
-        w.box((0.0, length), (side * half - 0.02, side * half + 0.02), (top - _MATTRESS - 0.06, top - _MATTRESS), iron)
+        w.box((0.0, length), around(side * half, 0.02), (top - _MATTRESS - 0.06, top - _MATTRESS), iron)
     w.box((0.0, length), (-half, half), (top - _MATTRESS - 0.03, top - _MATTRESS + 0.005), iron)
     _bedding(w, 0.0, length, width, top)
 
@@ -138,11 +136,7 @@ def storage(w: Workbench) -> None:
             )
             knob = y + side * 0.02
             w.box(
-                (x + 0.18 * length, x + 0.28 * length),
-                (knob - 0.012, knob + 0.012),
-                (0.19, 0.21),
-                w.look("metal"),
-                solid=False,
+                (x + 0.18 * length, x + 0.28 * length), around(knob, 0.012), (0.19, 0.21), w.look("metal"), solid=False
             )
     head = w.length(0.90, 1.05)
     w.box((-0.25, 0.0), (-half, half), (0.0, 0.55), look)
@@ -150,7 +144,7 @@ def storage(w: Workbench) -> None:
     w.box((-0.25, 0.0), (-half, half), (head - 0.02, head), look)
     for side in BOTH_SIDES:
         y = side * (half - 0.01)
-        w.box((-0.23, 0.0), (y - 0.01, y + 0.01), (0.55, head - 0.02), look)
+        w.box((-0.23, 0.0), around(y, 0.01), (0.55, head - 0.02), look)
     w.top((-0.21, -0.02), (-half + 0.05, half - 0.05), 0.55)
     _bedding(w, 0.005, length, width, top)
 
@@ -162,13 +156,13 @@ def four_poster(w: Workbench) -> None:
     half, x0, x1 = 0.5 * width + 0.035, -0.035, length + 0.035
     for x in (x0, x1):
         for side in BOTH_SIDES:
-            w.box((x - 0.035, x + 0.035), (side * half - 0.035, side * half + 0.035), (0.0, high), wood)
-        w.box((x - 0.02, x + 0.02), (-half, half), (high - 0.05, high), wood)
+            w.box(around(x, 0.035), around(side * half, 0.035), (0.0, high), wood)
+        w.box(around(x, 0.02), (-half, half), (high - 0.05, high), wood)
     for side in BOTH_SIDES:
-        w.box((x0, x1), (side * half - 0.02, side * half + 0.02), (high - 0.05, high), wood)
-        w.box((x0, x1), (side * half - 0.02, side * half + 0.02), (top - 0.30, top - 0.12), wood)
-    w.box((x0 - 0.02, x0 + 0.02), (-half, half), (0.30, w.length(1.0, 1.2)), wood)
-    w.box((x1 - 0.02, x1 + 0.02), (-half, half), (0.28, top - 0.10), wood)
+        w.box((x0, x1), around(side * half, 0.02), (high - 0.05, high), wood)
+        w.box((x0, x1), around(side * half, 0.02), (top - 0.30, top - 0.12), wood)
+    w.box(around(x0, 0.02), (-half, half), (0.30, w.length(1.0, 1.2)), wood)
+    w.box(around(x1, 0.02), (-half, half), (0.28, top - 0.10), wood)
     w.box((x0, x1), (-half, half), (top - 0.28, top - _MATTRESS + 0.01), wood)
     _bedding(w, 0.0, length, width, top)
 
@@ -182,10 +176,10 @@ def sleigh(w: Workbench) -> None:
         curve = [(x, 0.06), (x + out * 0.02, 0.5 * high), (x + out * 0.07, 0.8 * high), (x + out * 0.15, high - 0.03)]
         for a, b in itertools.pairwise(curve):
             w.bar((a[0], 0.0, a[1]), (b[0], 0.0, b[1] + 0.01), 2 * half, 0.05, wood)
-        w.rod((x + out * 0.16, -half, high - 0.04), (x + out * 0.16, half, high - 0.04), 0.045, wood)
-        w.box((x - 0.04, x + 0.04), (-half, half), (0.0, 0.08), wood)
+        w.rod_y((x + out * 0.16, high - 0.04), (-half, half), 0.045, wood)
+        w.box(around(x, 0.04), (-half, half), (0.0, 0.08), wood)
     for side in BOTH_SIDES:
-        w.box((0.0, length + 0.02), (side * half - 0.02, side * half + 0.02), (0.14, top - 0.12), wood)
+        w.box((0.0, length + 0.02), around(side * half, 0.02), (0.14, top - 0.12), wood)
     w.box((0.0, length), (-half, half), (0.2, top - _MATTRESS + 0.01), wood)
     _bedding(w, 0.01, length, width, top)
 
@@ -196,15 +190,15 @@ def futon(w: Workbench) -> None:
     wood, top = w.look("wood"), 0.40
     half = 0.5 * width + 0.08
     for side in BOTH_SIDES:
-        w.rod((-0.10, side * (half - 0.05), 0.10), (length + 0.10, side * (half - 0.05), 0.10), 0.05, wood)
+        w.rod_x((side * (half - 0.05), 0.10), (-0.10, length + 0.10), 0.05, wood)
     for i in range(6):
         x = 0.05 + i * (length - 0.1) / 5
-        w.box((x - 0.05, x + 0.05), (-half, half), (0.145, 0.185), wood)
+        w.box(around(x, 0.05), (-half, half), (0.145, 0.185), wood)
     for x in (0.2, length - 0.2):
-        w.box((x - 0.05, x + 0.05), (-half + 0.02, half - 0.02), (0.0, 0.06), wood)
+        w.box(around(x, 0.05), (-half + 0.02, half - 0.02), (0.0, 0.06), wood)
     _bedding(w, 0.0, length, width, top)
-    w.rod((-0.09, -0.5 * width, 0.42), (-0.09, 0.5 * width, 0.42), 0.10, w.look("fabric"))
-    w.box((-0.14, -0.04), (-0.5 * width, 0.5 * width), (0.145, 0.34), wood)
+    w.rod_y((-0.09, 0.42), centred(width), 0.10, w.look("fabric"))
+    w.box((-0.14, -0.04), centred(width), (0.145, 0.34), wood)
 
 
 STYLES = (

@@ -10,7 +10,7 @@ from __future__ import annotations
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.shapes import chamfered_box
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
@@ -29,9 +29,9 @@ def wardrobe_sliding(w: Workbench) -> None:
     """Builds a wardrobe with two or three wide sliding doors, one of them like a mirror."""
     width, depth, height = w.width(1.40, 2.20), w.depth(0.60, 0.66), w.height(2.00, 2.30)
     body, front, metal = w.look("lacquer"), w.look("wood"), w.look("metal")
-    w.box((-0.5 * depth, 0.5 * depth - 0.06), (-0.5 * width, 0.5 * width), (0.0, height), body)
-    w.box((0.5 * depth - 0.06, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.05), body)
-    w.box((0.5 * depth - 0.06, 0.5 * depth), (-0.5 * width, 0.5 * width), (height - 0.05, height), body)
+    w.box((-0.5 * depth, 0.5 * depth - 0.06), centred(width), (0.0, height), body)
+    w.box((0.5 * depth - 0.06, 0.5 * depth), centred(width), (0.0, 0.05), body)
+    w.box((0.5 * depth - 0.06, 0.5 * depth), centred(width), (height - 0.05, height), body)
     leaves = 2 if width < 1.8 else 3
     pitch = width / leaves
     glazed = w.whole(0, leaves - 1)
@@ -39,8 +39,8 @@ def wardrobe_sliding(w: Workbench) -> None:
         x = 0.5 * depth - 0.06 + 0.025 * (i % 2)
         y = (-0.5 * width + i * pitch, -0.5 * width + (i + 1) * pitch)
         w.box((x, x + 0.022), y, (0.05, height - 0.05), w.look("screen") if i == glazed else front)
-        for edge in (y[0] + 0.012, y[1] - 0.012):
-            w.box((x + 0.022, x + 0.030), (edge - 0.012, edge + 0.012), (0.05, height - 0.05), metal, solid=False)
+        for edge in inset(y, 0.012):
+            w.box((x + 0.022, x + 0.030), around(edge, 0.012), (0.05, height - 0.05), metal, solid=False)
 
 
 def armoire(w: Workbench) -> None:
@@ -52,7 +52,7 @@ def armoire(w: Workbench) -> None:
     w.box((x[0], x[1] + 0.05), (y[0] - 0.05, y[1] + 0.05), (height - 0.08, height - 0.03), wood)
     w.box((x[0], x[1] + 0.08), (y[0] - 0.08, y[1] + 0.08), (height - 0.03, height), wood)
     w.box((x[0], x[1] + 0.03), (y[0] - 0.03, y[1] + 0.03), (0.10, 0.15), wood)
-    for sx in (x[0] + 0.07, x[1] - 0.05):
+    for sx in inset(x, 0.07, 0.05):
         for side in BOTH_SIDES:
             w.ellipsoid((sx, side * (0.5 * width - 0.06), 0.055), (0.055, 0.055, 0.055), wood)
     parts.plain_drawers(w, x[1], y, (0.16, 0.40), 1, 1, wood, w.look("brass"), "cup")
@@ -80,7 +80,7 @@ def sideboard_legs(w: Workbench) -> None:
         w, x, (y[0] + 0.015, third), (foot + 0.015, height - 0.02), 3, 1, front, w.look("brass"), "knob"
     )
     parts.plain_doors(w, x, (third, y[1] - 0.015), (foot + 0.015, height - 0.02), 2, front, w.look("brass"), "knob")
-    w.legs((-0.5 * depth + 0.06, 0.5 * depth - 0.06), (y[0] + 0.10, y[1] - 0.10), (0.0, foot), 0.035, wood, splay=0.025)
+    w.legs(centred(depth, 0.06), inset(y, 0.10), (0.0, foot), 0.035, wood, splay=0.025)
 
 
 def display(w: Workbench) -> None:
@@ -97,11 +97,11 @@ def display(w: Workbench) -> None:
     w.box((x[0], x[0] + 0.012), y, (base + 0.025, height), look)
     for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.011)
-        w.box((x[0], front), (edge - 0.011, edge + 0.011), (base + 0.025, height), look)
+        w.box((x[0], front), around(edge, 0.011), (base + 0.025, height), look)
     for z in (base + 0.40, base + 0.72):
-        w.box((x[0] + 0.012, front - 0.02), (y[0] + 0.02, y[1] - 0.02), (z, z + 0.016), look)
+        w.box((x[0] + 0.012, front - 0.02), inset(y, 0.02), (z, z + 0.016), look)
     w.box((x[0], front + 0.02), (y[0] - 0.015, y[1] + 0.015), (height - 0.03, height), look)
-    w.box((front - 0.006, front), (y[0] + 0.022, y[1] - 0.022), (base + 0.025, height - 0.03), w.look("glass"))
+    w.box((front - 0.006, front), inset(y, 0.022), (base + 0.025, height - 0.03), w.look("glass"))
     w.box((front - 0.012, front + 0.006), (-0.02, 0.02), (base + 0.025, height - 0.03), look, solid=False)
     for i in range(3):
         w.cylinder(
@@ -121,19 +121,13 @@ def tambour(w: Workbench) -> None:
     slats = 15
     for i in range(slats):
         c = y[0] + (i + 0.5) * width / slats
-        w.box(
-            (x, x + 0.016),
-            (c - 0.30 * width / slats, c + 0.30 * width / slats),
-            (0.18, height - 0.02),
-            wood,
-            solid=False,
-        )
+        w.box((x, x + 0.016), around(c, 0.30 * width / slats), (0.18, height - 0.02), wood, solid=False)
     for side in BOTH_SIDES:
         c = side * (0.5 * width - 0.15)
-        w.box((-0.5 * depth + 0.03, 0.5 * depth - 0.03), (c - 0.01, c + 0.01), (0.0, 0.02), metal)
+        w.box(centred(depth, 0.03), around(c, 0.01), (0.0, 0.02), metal)
         for sx in BOTH_SIDES:
             cx = sx * (0.5 * depth - 0.04)
-            w.box((cx - 0.01, cx + 0.01), (c - 0.01, c + 0.01), (0.02, 0.16), metal)
+            w.box(around(cx, 0.01), around(c, 0.01), (0.02, 0.16), metal)
 
 
 def media_low(w: Workbench) -> None:
@@ -144,7 +138,7 @@ def media_low(w: Workbench) -> None:
     w.box(x, y, (height - 0.03, height), body)
     w.box(x, y, (0.06, 0.085), body)
     w.box((x[0], x[0] + 0.012), y, (0.085, height - 0.03), body)
-    w.box((x[0] + 0.03, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), (0.0, 0.06), w.look("dark"))
+    w.box(inset(x, 0.03, 0.05), inset(y, 0.05), (0.0, 0.06), w.look("dark"))
     third = width / 3
     for side in BOTH_SIDES:
         low, high = sorted((side * 0.5 * width, side * (0.5 * width - third)))
@@ -152,9 +146,9 @@ def media_low(w: Workbench) -> None:
         parts.plain_drawers(
             w, x[1] - parts.FRONT_M, (low, high), (0.085, height - 0.03), 1, 1, body, w.look("metal"), "bar"
         )
-    w.box((x[0] + 0.012, x[1] - 0.06), (-0.5 * third, 0.5 * third), (0.5 * height - 0.01, 0.5 * height + 0.01), body)
-    w.box((x[0] + 0.08, x[1] - 0.08), (-0.18, 0.18), (0.085, 0.14), w.look("dark"), solid=False)
-    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), height)
+    w.box(inset(x, 0.012, 0.06), centred(third), around(0.5 * height, 0.01), body)
+    w.box(inset(x, 0.08), (-0.18, 0.18), (0.085, 0.14), w.look("dark"), solid=False)
+    w.top(inset(x, 0.03), inset(y, 0.05), height)
 
 
 def media_legs(w: Workbench) -> None:
@@ -163,20 +157,14 @@ def media_legs(w: Workbench) -> None:
     wood, iron = w.look("wood"), w.look("iron")
     x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.035, height), wood)
-    w.box((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.01), (0.15, 0.175), wood)
-    w.legs((x[0] + 0.005, x[1] - 0.005), (y[0] + 0.005, y[1] - 0.005), (0.0, height - 0.035), 0.025, iron)
+    w.box(inset(x, 0.01), inset(y, 0.01), (0.15, 0.175), wood)
+    w.legs(inset(x, 0.005), inset(y, 0.005), (0.0, height - 0.035), 0.025, iron)
     side = w.choice(BOTH_SIDES)
     low, high = sorted((side * 0.47 * width, side * 0.10 * width))
-    w.box((x[0] + 0.02, x[1] - 0.03), (low, high), (0.175, height - 0.035), wood)
+    w.box(inset(x, 0.02, 0.03), (low, high), (0.175, height - 0.035), wood)
     parts.plain_doors(w, x[1] - 0.03, (low, high), (0.175, height - 0.035), 1, wood, w.look("brass"), "knob")
-    w.box(
-        (x[0] + 0.08, x[1] - 0.08),
-        (-side * 0.30 * width - 0.15, -side * 0.30 * width + 0.15),
-        (0.175, 0.24),
-        w.look("dark"),
-        solid=False,
-    )
-    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), height)
+    w.box(inset(x, 0.08), around(-side * 0.30 * width, 0.15), (0.175, 0.24), w.look("dark"), solid=False)
+    w.top(inset(x, 0.03), inset(y, 0.05), height)
 
 
 def wall_unit(w: Workbench) -> None:
@@ -184,7 +172,7 @@ def wall_unit(w: Workbench) -> None:
     width, depth, height = w.width(0.60, 1.80), w.depth(0.32, 0.36), w.height(0.60, 0.75)
     w.mount_height_m = 1.42
     look = w.look("lacquer") if w.chance(0.6) else w.look("wood")
-    y = (-0.5 * width, 0.5 * width)
+    y = centred(width)
     w.box((0.0, depth), y, (0.0, height), look)
     parts.plain_doors(
         w, depth, y, (0.0, height), max(1, round(width / 0.5)), look, w.look("metal"), "bar", low_handles=True
@@ -195,18 +183,18 @@ def wall_unit_glazed(w: Workbench) -> None:
     """Builds a kitchen wall cupboard with framed glass doors in front of a pale back with a shelf."""
     width, depth, height = w.width(0.60, 1.80), w.depth(0.30, 0.35), w.height(0.60, 0.75)
     w.mount_height_m = 1.42
-    look, y = w.look("lacquer"), (-0.5 * width, 0.5 * width)
+    look, y = w.look("lacquer"), centred(width)
     w.box((0.0, 0.02), y, (0.0, height), look)
-    for z in ((0.0, 0.02), (0.5 * height - 0.008, 0.5 * height + 0.008), (height - 0.02, height)):
+    for z in ((0.0, 0.02), around(0.5 * height, 0.008), (height - 0.02, height)):
         w.box((0.02, depth - 0.02), y, z, look)
     count = max(1, round(width / 0.5))
     pitch = width / count
     for i in range(count + 1):
         c = min(max(y[0] + i * pitch, y[0] + 0.02), y[1] - 0.02)
-        w.box((0.02, depth), (c - 0.02, c + 0.02), (0.0, height), look)
-    w.box((depth - 0.012, depth - 0.006), (y[0] + 0.04, y[1] - 0.04), (0.02, height - 0.02), w.look("glass"))
+        w.box((0.02, depth), around(c, 0.02), (0.0, height), look)
+    w.box((depth - 0.012, depth - 0.006), inset(y, 0.04), (0.02, height - 0.02), w.look("glass"))
     for z in ((0.0, 0.045), (height - 0.045, height)):
-        w.box((depth - 0.018, depth), (y[0] + 0.04, y[1] - 0.04), z, look)
+        w.box((depth - 0.018, depth), inset(y, 0.04), z, look)
 
 
 def vanity_doors(w: Workbench) -> None:
@@ -214,31 +202,24 @@ def vanity_doors(w: Workbench) -> None:
     width, depth, height = w.width(0.70, 1.20), w.depth(0.46, 0.52), w.length(0.80, 0.86)
     look = parts.wood_look(w)
     x, y = parts.footprint(depth, width)
-    w.box((x[0], x[1] - 0.03), (y[0] + 0.01, y[1] - 0.01), (0.10, height - 0.03), look)
-    w.box((x[0] + 0.02, x[1] - 0.10), (y[0] + 0.03, y[1] - 0.03), (0.0, 0.10), w.look("dark"))
+    w.box((x[0], x[1] - 0.03), inset(y, 0.01), (0.10, height - 0.03), look)
+    w.box(inset(x, 0.02, 0.10), inset(y, 0.03), (0.0, 0.10), w.look("dark"))
     w.box(x, y, (height - 0.03, height), w.look("stone"))
     parts.plain_doors(
-        w,
-        x[1] - 0.03,
-        (y[0] + 0.01, y[1] - 0.01),
-        (0.10, height - 0.04),
-        max(2, round(width / 0.5)),
-        look,
-        w.look("metal"),
-        "bar",
+        w, x[1] - 0.03, inset(y, 0.01), (0.10, height - 0.04), max(2, round(width / 0.5)), look, w.look("metal"), "bar"
     )
     w.put(w.make("sink", use="vessel"), (0.02, 0.0, height))
     for side in BOTH_SIDES:
         if 0.5 * width > 0.45:
             low, high = sorted((side * 0.32, side * (0.5 * width - 0.03)))
-            w.top((x[0] + 0.05, x[1] - 0.05), (low, high), height)
+            w.top(inset(x, 0.05), (low, high), height)
 
 
 def vanity_floating(w: Workbench) -> None:
     """Builds a washstand on the wall: one wide drawer block under a slab with a basin on it."""
     width, depth = w.width(0.70, 1.20), w.depth(0.45, 0.50)
     w.mount_height_m = 0.42
-    wood, y = w.look("wood"), (-0.5 * width, 0.5 * width)
+    wood, y = w.look("wood"), centred(width)
     w.box((0.0, depth - 0.03), y, (0.0, 0.40), wood)
     w.box((0.0, depth), (y[0] - 0.01, y[1] + 0.01), (0.40, 0.43), w.look("stone"))
     parts.plain_drawers(w, depth - 0.03, y, (0.0, 0.39), 2, 1, wood, w.look("metal"), "bar")
@@ -254,7 +235,7 @@ def sliding_wardrobe(w: Workbench) -> None:
     w.box((x, x + 0.012), (y[0] + 0.02, middle + 0.03), (0.09, height - 0.05), panel, solid=False)
     w.box((x, x + 0.022), (middle - 0.03, y[1] - 0.02), (0.09, height - 0.05), w.look("mirror"), solid=False)
     for z in (0.07, height - 0.035):
-        w.box((x, x + 0.026), (y[0] + 0.01, y[1] - 0.01), (z - 0.012, z + 0.012), metal, solid=False)
+        w.box((x, x + 0.026), inset(y, 0.01), around(z, 0.012), metal, solid=False)
     w.box((x, x + 0.028), (middle - 0.04, middle - 0.025), (0.09, height - 0.05), metal, solid=False)
 
 
@@ -264,28 +245,26 @@ def slatted_sideboard(w: Workbench) -> None:
     wood, body, metal = w.look("wood"), w.look("lacquer"), w.look("iron")
     x, y = parts.case(w, depth, width, (0.16, height), body)
     _slatted_doors(w, x, y, (0.18, height - 0.03), wood)
-    posts = (-0.5 * depth + 0.06, 0.5 * depth - 0.06)
-    for edge in (-0.5 * width + 0.06, 0.5 * width - 0.06):
-        w.box((-0.5 * depth + 0.03, 0.5 * depth - 0.03), (edge - 0.014, edge + 0.014), (0.0, 0.02), metal)
+    posts = centred(depth, 0.06)
+    for edge in centred(width, 0.06):
+        w.box(centred(depth, 0.03), around(edge, 0.014), (0.0, 0.02), metal)
         for post in posts:
-            w.box((post - 0.012, post + 0.012), (edge - 0.014, edge + 0.014), (0.02, 0.17), metal)
+            w.box(around(post, 0.012), around(edge, 0.014), (0.02, 0.17), metal)
 
 
 def _slatted_doors(w: Workbench, x: float, y: Range, z: Range, look: Look) -> None:
     """Adds three hinged doors of slats side by side, each with a slot as its handle."""
-    joints = (y[0] + 0.003, y[1] - 0.003), (z[0] + 0.003, z[1] - 0.003)
+    joints = inset(y, 0.003), inset(z, 0.003)
     w.box((x, x + parts.SHADOW_M), *joints, parts.darker(look), solid=False)
     pitch, tall = (y[1] - y[0]) / 3, z[1] - z[0]
     up, half = z[0] + 0.68 * tall, 0.5 * min(0.18, 0.5 * tall)
     face = x + parts.FRONT_M
     for i in range(3):
         left = y[0] + i * pitch
-        _slatted_front(
-            w, x, (left + parts.GAP_M, left + pitch - parts.GAP_M), (z[0] + parts.GAP_M, z[1] - parts.GAP_M), look
-        )
+        _slatted_front(w, x, (left + parts.GAP_M, left + pitch - parts.GAP_M), inset(z, parts.GAP_M), look)
         hand = left + (pitch - 0.035 if i % 2 == 0 else 0.035)
-        slot = (hand - 0.007, hand + 0.007), (up - half - 0.006, up + half + 0.006)
-        w.box((face - 0.002, face + 0.002), *slot, w.look("dark"), solid=False)
+        slot = around(hand, 0.007), (up - half - 0.006, up + half + 0.006)
+        w.box(around(face, 0.002), *slot, w.look("dark"), solid=False)
 
 
 def _slatted_front(w: Workbench, x: float, y: Range, z: Range, look: Look) -> None:
@@ -293,7 +272,7 @@ def _slatted_front(w: Workbench, x: float, y: Range, z: Range, look: Look) -> No
     face = x + parts.FRONT_M
     w.box((x, face), y, z, look, solid=False)
     edge = min(0.06, 0.22 * (y[1] - y[0]), 0.22 * (z[1] - z[0]))
-    y, z = (y[0] + edge, y[1] - edge), (z[0] + edge, z[1] - edge)
+    y, z = inset(y, edge), inset(z, edge)
     w.box((x, face + 0.001), y, z, parts.darker(look, 0.5), solid=False)
     rows = max(2, min(7, round((z[1] - z[0]) / 0.12)))
     step = (z[1] - z[0]) / rows

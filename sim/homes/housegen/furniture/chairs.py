@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, loft, strip
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -50,12 +50,12 @@ def _wooden_frame(w: Workbench, f: _Frame, wood: Look, thick: float) -> None:
     inset = 0.5 * thick
     for side in BOTH_SIDES:
         y = side * (f.half - inset)
-        w.box((f.front - thick, f.front), (y - inset, y + inset), (0.0, f.seat - 0.02), wood)
+        w.box((f.front - thick, f.front), around(y, inset), (0.0, f.seat - 0.02), wood)
         w.bar((f.back + inset - 0.03, y, 0.0), (f.back + inset, y, f.seat), thick, thick, wood)
         w.bar((f.back + inset, y, f.seat - 0.01), (f.back_x(f.height) + inset, y, f.height), thick, thick, wood)
-        w.box((f.back + thick, f.front - thick), (y - 0.01, y + 0.01), (f.seat - 0.08, f.seat - 0.02), wood)
+        w.box((f.back + thick, f.front - thick), around(y, 0.01), (f.seat - 0.08, f.seat - 0.02), wood)
     for x in (f.back + inset, f.front - inset):
-        w.box((x - 0.01, x + 0.01), (-f.half + thick, f.half - thick), (f.seat - 0.08, f.seat - 0.02), wood)
+        w.box(around(x, 0.01), (-f.half + thick, f.half - thick), (f.seat - 0.08, f.seat - 0.02), wood)
 
 
 def _crossbar(
@@ -65,7 +65,7 @@ def _crossbar(
     half = f.half if half is None else half
     x = f.back_x(0.5 * (z[0] + z[1])) + 0.5 * thick
     tilt = -math.atan2(f.rake, f.height - f.seat)
-    w.box((x - 0.5 * thick, x + 0.5 * thick), (-half, half), z, look, tilt=tilt)
+    w.box(around(x, 0.5 * thick), (-half, half), z, look, tilt=tilt)
 
 
 def slat_back(w: Workbench) -> None:
@@ -92,12 +92,12 @@ def ladder_back(w: Workbench) -> None:
     f, wood, thick = _dining_frame(w, 0.92, 1.02), w.look("wood"), 0.034
     for side in BOTH_SIDES:
         y = side * (f.half - 0.5 * thick)
-        w.rod((f.front - 0.02, y, 0.0), (f.front - 0.02, y, f.seat), 0.5 * thick, wood)
-        w.rod((f.back + 0.02, y, 0.0), (f.back + 0.02, y, f.seat), 0.5 * thick, wood)
+        w.cylinder((f.front - 0.02, y), (0.0, f.seat), 0.5 * thick, wood)
+        w.cylinder((f.back + 0.02, y), (0.0, f.seat), 0.5 * thick, wood)
         w.rod((f.back + 0.02, y, f.seat), (f.back_x(f.height) + 0.02, y, f.height), 0.5 * thick, wood)
-        w.rod((f.front - 0.02, y, 0.16), (f.back + 0.02, y, 0.16), 0.011, wood)
+        w.rod_x((y, 0.16), (f.front - 0.02, f.back + 0.02), 0.011, wood)
     for x in (f.front - 0.02, f.back + 0.02):
-        w.rod((x, -f.half + 0.02, 0.24), (x, f.half - 0.02, 0.24), 0.011, wood)
+        w.rod_y((x, 0.24), (-f.half + 0.02, f.half - 0.02), 0.011, wood)
     w.box((f.back + 0.01, f.front - 0.01), (-f.half + 0.01, f.half - 0.01), (f.seat - 0.04, f.seat), w.look("wicker"))
     rungs = w.whole(3, 4)
     for i in range(rungs):
@@ -155,8 +155,8 @@ def cantilever(w: Workbench) -> None:
         ]
         for a, b in itertools.pairwise(corners):
             w.rod(a, b, r, tube, round_ends=True)
-    w.rod((f.back - 0.02, -f.half + r, r), (f.back - 0.02, f.half - r, r), r, tube)
-    w.box((f.back + 0.04, f.front), (-f.half + 0.005, f.half - 0.005), (f.seat - 0.015, f.seat + 0.015), cover)
+    w.rod_y((f.back - 0.02, r), (-f.half + r, f.half - r), r, tube)
+    w.box((f.back + 0.04, f.front), (-f.half + 0.005, f.half - 0.005), around(f.seat, 0.015), cover)
     _crossbar(w, f, (f.height - 0.20, f.height - 0.01), 0.03, cover, f.half - 0.005)
 
 
@@ -176,7 +176,7 @@ def cafe_metal(w: Workbench) -> None:
             steel,
             round_ends=True,
         )
-    w.rod((f.back_x(top), -f.half + 0.05, top), (f.back_x(top), f.half - 0.05, top), 0.012, steel)
+    w.rod_y((f.back_x(top), top), (-f.half + 0.05, f.half - 0.05), 0.012, steel)
     w.bar((f.back + 0.015, 0.0, f.seat - 0.005), (f.back_x(top), 0.0, top), 0.13, 0.008, steel)
 
 
@@ -187,9 +187,9 @@ def windsor(w: Workbench) -> None:
     rim = [Ring(f.seat - 0.04, 0.9 * f.front, 0.9 * f.half, power=2.6), Ring(f.seat, f.front, f.half, power=2.6)]
     w.mesh(loft(rim, 14, hull=True), (0.0, 0.0, 0.0), wood)
     w.legs((-0.11, 0.12), (-0.13, 0.13), (0.0, f.seat - 0.02), 0.036, wood, splay=0.075)
-    w.rod((0.0, -0.17, 0.17), (0.0, 0.17, 0.17), 0.010, wood)
+    w.rod_y((0.0, 0.17), (-0.17, 0.17), 0.010, wood)
     for side in BOTH_SIDES:
-        w.rod((-0.15, side * 0.173, 0.17), (0.16, side * 0.173, 0.17), 0.010, wood)
+        w.rod_x((side * 0.173, 0.17), (-0.15, 0.16), 0.010, wood)
     bow = []
     for i in range(7):
         angle = math.pi * i / 6

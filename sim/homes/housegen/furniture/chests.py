@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
@@ -35,7 +35,7 @@ def _drawer_column(
     depth, width, height = size
     look = parts.wood_look(w)
     x, y = parts.case(w, depth, width, (foot, height), look, foot=foot)
-    drawers = (y[0] + 0.01, y[1] - 0.01), (first, height - 0.025)
+    drawers = inset(y, 0.01), (first, height - 0.025)
     parts.plain_drawers(w, x, *drawers, w.whole(*rows), 1, look, w.look(metal), w.choice(handles))
 
 
@@ -47,7 +47,7 @@ def dresser(w: Workbench) -> None:
     parts.plain_drawers(
         w,
         x,
-        (y[0] + 0.012, y[1] - 0.012),
+        inset(y, 0.012),
         (foot + 0.012, height - 0.03),
         3,
         2,
@@ -55,7 +55,7 @@ def dresser(w: Workbench) -> None:
         w.look("metal"),
         w.choice(("bar", "knob", "cup")),
     )
-    w.legs((-0.5 * depth + 0.03, 0.5 * depth - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.0, foot), 0.05, w.look("wood"))
+    w.legs(centred(depth, 0.03), inset(y, 0.03), (0.0, foot), 0.05, w.look("wood"))
 
 
 def tallboy(w: Workbench) -> None:
@@ -69,11 +69,11 @@ def handleless(w: Workbench) -> None:
     width, depth, height = w.width(0.80, 1.30), w.depth(0.42, 0.48), w.length(0.70, 0.85)
     body, front = w.look("wood"), w.look("lacquer")
     x, y = parts.case(w, depth, width, (0.04, height), body, foot=0.04)
-    w.box((x, x + 0.004), (y[0] + 0.008, y[1] - 0.008), (0.045, height - 0.01), parts.darker(front), solid=False)
+    w.box((x, x + 0.004), inset(y, 0.008), (0.045, height - 0.01), parts.darker(front), solid=False)
     tall = (height - 0.06) / 3
     for i in range(3):
         z = 0.045 + i * tall
-        w.box((x, x + 0.02), (y[0] + 0.006, y[1] - 0.006), (z + 0.004, z + tall - 0.022), front, solid=False)
+        w.box((x, x + 0.02), inset(y, 0.006), (z + 0.004, z + tall - 0.022), front, solid=False)
 
 
 def bedside_chest(w: Workbench) -> None:
@@ -97,12 +97,12 @@ def campaign(w: Workbench) -> None:
         (-0.25 * width, 0.80 * height),
         (0.25 * width, 0.80 * height),
     ):
-        w.box((x + 0.016, x + 0.022), (c - 0.05, c + 0.05), (z - 0.025, z + 0.025), brass, solid=False)
+        w.box((x + 0.016, x + 0.022), around(c, 0.05), around(z, 0.025), brass, solid=False)
     for side in BOTH_SIDES:
         for z in (0.09, height - 0.06):
             edge = side * (0.5 * width - 0.028)
-            w.box((x - 0.05, x + 0.021), (edge - 0.03, edge + 0.03), (z, z + 0.06), brass, solid=False)
-        for sx in (-0.5 * depth + 0.06, 0.5 * depth - 0.06):
+            w.box((x - 0.05, x + 0.021), around(edge, 0.03), (z, z + 0.06), brass, solid=False)
+        for sx in centred(depth, 0.06):
             w.ellipsoid((sx, side * (0.5 * width - 0.06), 0.05), (0.05, 0.05, 0.05), wood)
 
 
@@ -111,11 +111,9 @@ def apothecary(w: Workbench) -> None:
     width, depth, height = w.width(0.80, 1.05), w.depth(0.36, 0.42), w.length(0.95, 1.10)
     wood = w.look("wood")
     x, y = parts.case(w, depth, width, (0.34, height), wood)
-    parts.plain_drawers(
-        w, x, (y[0] + 0.02, y[1] - 0.02), (0.36, height - 0.03), 3, 4, w.look("lacquer"), w.look("brass"), "knob"
-    )
-    w.legs((-0.5 * depth + 0.01, 0.5 * depth - 0.01), (y[0] + 0.02, y[1] - 0.02), (0.0, 0.35), 0.045, wood)
-    w.box((-0.5 * depth + 0.02, 0.5 * depth - 0.02), (y[0] + 0.04, y[1] - 0.04), (0.10, 0.12), wood)
+    parts.plain_drawers(w, x, inset(y, 0.02), (0.36, height - 0.03), 3, 4, w.look("lacquer"), w.look("brass"), "knob")
+    w.legs(centred(depth, 0.01), inset(y, 0.02), (0.0, 0.35), 0.045, wood)
+    w.box(centred(depth, 0.02), inset(y, 0.04), (0.10, 0.12), wood)
 
 
 def bedside_drum(w: Workbench) -> None:
@@ -125,7 +123,7 @@ def bedside_drum(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (0.05, height), radius, look)
     w.cylinder((0.0, 0.0), (0.0, 0.05), radius - 0.04, w.look("dark"))
     for z in (0.06, 0.5 * (height + 0.05), height - 0.012):
-        w.cylinder((0.0, 0.0), (z - 0.006, z + 0.006), radius + 0.004, metal, solid=False)
+        w.cylinder((0.0, 0.0), around(z, 0.006), radius + 0.004, metal, solid=False)
     for z in (0.28 * height + 0.03, 0.72 * height):
         w.ball((radius + 0.012, 0.0, z), 0.016, metal, solid=False)
     half = 0.6 * radius

@@ -10,7 +10,7 @@ import math
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import MeshShape
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, darker
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, darker, polar
 from sim.homes.housegen.furniture.parts.leaves import bush, joined
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, drape, hoop, loft, named_mesh, pillow
 from sim.homes.housegen.furniture.workbench import Workbench
@@ -74,10 +74,10 @@ def clothes_rack(w: Workbench) -> None:
     metal = w.look("metal")
     for side in BOTH_SIDES:
         y = side * 0.5 * width
-        w.rod((0.0, y, 0.02), (0.0, y, height), 0.013, metal)
-        w.rod((-0.22, y, 0.013), (0.22, y, 0.013), 0.013, metal)
-    w.rod((0.0, -0.5 * width, height - 0.013), (0.0, 0.5 * width, height - 0.013), 0.013, metal)
-    w.rod((0.0, -0.5 * width, 0.12), (0.0, 0.5 * width, 0.12), 0.010, metal)
+        w.cylinder((0.0, y), (0.02, height), 0.013, metal)
+        w.rod_x((y, 0.013), (-0.22, 0.22), 0.013, metal)
+    w.rod_y((0.0, height - 0.013), centred(width), 0.013, metal)
+    w.rod_y((0.0, 0.12), centred(width), 0.010, metal)
     count = w.whole(5, 8)
     for i in range(count):
         y = (i + 0.5) / count * (width - 0.2) - 0.5 * (width - 0.2)
@@ -96,8 +96,8 @@ def hall_board(w: Workbench) -> None:
     """Builds a shelf with hooks below it, on which jackets and a bag hang, and a hat on top."""
     width, wood, iron = w.width(0.75, 1.15), w.look("wood"), w.look("iron")
     w.mount_height_m = 0.78
-    w.box((0.0, 0.018), (-0.5 * width, 0.5 * width), (0.86, 1.04), wood)
-    w.box((0.0, 0.22), (-0.5 * width, 0.5 * width), (1.04, 1.065), wood)
+    w.box((0.0, 0.018), centred(width), (0.86, 1.04), wood)
+    w.box((0.0, 0.22), centred(width), (1.04, 1.065), wood)
     count = w.whole(3, 4)
     for i in range(count):
         y = (i + 0.5) * width / count - 0.5 * width
@@ -112,15 +112,15 @@ def valet(w: Workbench) -> None:
     wood, high = w.look("wood"), w.length(1.10, 1.25)
     w.box((-0.19, 0.19), (-0.22, 0.22), (0.10, 0.13), wood)
     for side in BOTH_SIDES:
-        w.rod((0.0, side * 0.15, 0.0), (0.0, side * 0.15, high - 0.16), 0.016, wood)
-        w.rod((-0.18, side * 0.15, 0.013), (0.18, side * 0.15, 0.013), 0.013, wood)
+        w.cylinder((0.0, side * 0.15), (0.0, high - 0.16), 0.016, wood)
+        w.rod_x((side * 0.15, 0.013), (-0.18, 0.18), 0.013, wood)
         w.ellipsoid((0.05, side * 0.07, 0.175), (0.13, 0.045, 0.05), w.look("book"), solid=False)
         w.rod((0.0, side * 0.03, high - 0.04), (0.0, side * 0.22, high - 0.11), 0.025, wood, round_ends=True)
-    w.rod((0.0, -0.15, high - 0.30), (0.0, 0.15, high - 0.30), 0.012, wood)
-    w.rod((0.0, -0.15, high - 0.14), (0.0, 0.15, high - 0.14), 0.016, wood)
+    w.rod_y((0.0, high - 0.30), (-0.15, 0.15), 0.012, wood)
+    w.rod_y((0.0, high - 0.14), (-0.15, 0.15), 0.016, wood)
     jacket = w.new_look("denim")
     w.mesh(drape(0.40, 0.60, 0.14, 4), (-0.07, 0.0, high - 0.68), jacket, solid=False)
-    w.rod((0.0, -0.21, high - 0.09), (0.0, 0.21, high - 0.09), 0.055, jacket, solid=False, round_ends=True)
+    w.rod_y((0.0, high - 0.09), (-0.21, 0.21), 0.055, jacket, solid=False, round_ends=True)
     for side in BOTH_SIDES:
         w.rod(
             (0.0, side * 0.24, high - 0.12),
@@ -146,7 +146,7 @@ def coat_hooks(w: Workbench) -> None:
     """Builds a rail of hooks with coats."""
     width, iron = w.width(0.70, 1.10), w.look("iron")
     w.mount_height_m = 0.75
-    w.box((0.0, 0.012), (-0.5 * width, 0.5 * width), (0.95, 0.99), iron)
+    w.box((0.0, 0.012), centred(width), (0.95, 0.99), iron)
     count = w.whole(3, 4)
     for i in range(count):
         y = (i + 0.5) / count * width - 0.5 * width
@@ -163,7 +163,7 @@ def laundry_basket(w: Workbench) -> None:
     w.mesh(hoop(r + 0.008, 0.03, 0.04), (0.0, 0.0, high - 0.01), w.look("wood"), solid=False)
     for i in range(4):
         a = 1.7 * i
-        at = (0.42 * r * math.cos(a), 0.42 * r * math.sin(a), high + 0.005 + 0.012 * i)
+        at = (*polar(0.42 * r, a), high + 0.005 + 0.012 * i)
         cloth = w.new_look("denim") if i == 1 else w.new_look("bright")
         w.mesh(joined("cloth", [bush(at, (0.55 * r, 0.45 * r, 0.07), w.rng, 8)]), (0.0, 0.0, 0.0), cloth, solid=False)
     w.mesh(drape(0.16, 0.24, 0.05, 2), (r - 0.012, 0.03, high - 0.20), w.new_look("denim"), solid=False)
@@ -177,9 +177,9 @@ def open_wardrobe(w: Workbench) -> None:
         y = side * (0.5 * width - 0.02)
         w.bar((-0.24, y, 0.0), (0.015, y, high), 0.03, 0.035, wood)
         w.bar((0.24, y, 0.0), (-0.015, y, high), 0.03, 0.035, wood)
-        w.box((-0.20, 0.20), (y - 0.012, y + 0.012), (0.20, 0.23), wood)
-    w.rod((0.0, -0.5 * width + 0.02, high - 0.06), (0.0, 0.5 * width - 0.02, high - 0.06), 0.016, wood)
-    w.box((-0.20, 0.20), (-0.5 * width + 0.02, 0.5 * width - 0.02), (0.23, 0.25), wood)
+        w.box((-0.20, 0.20), around(y, 0.012), (0.20, 0.23), wood)
+    w.rod_y((0.0, high - 0.06), centred(width, 0.02), 0.016, wood)
+    w.box((-0.20, 0.20), centred(width, 0.02), (0.23, 0.25), wood)
     count = w.whole(4, 6)
     for i in range(count):
         y = (i + 0.5) / count * 0.62 * width - 0.31 * width
@@ -198,7 +198,7 @@ def open_wardrobe(w: Workbench) -> None:
 def coat_tree(w: Workbench) -> None:
     """Builds a coat stand: a pole on four feet, with coats and a scarf on its arms."""
     wood, high = w.look("wood"), w.length(1.70, 1.85)
-    w.rod((0.0, 0.0, 0.05), (0.0, 0.0, high), 0.022, wood)
+    w.cylinder((0.0, 0.0), (0.05, high), 0.022, wood)
     w.ball((0.0, 0.0, high), 0.035, wood)
     for i in range(4):
         a = math.tau * (i + 0.5) / 4
@@ -221,7 +221,7 @@ def wall_pegs_dress(w: Workbench) -> None:
         y = side * 0.30
         high = 1.05 if side < 0 else 0.75
         w.rod((0.0, y, 1.22), (0.07, y, 1.23), 0.012, wood)
-        w.rod((0.045, y, 1.13), (0.045, y, 1.23), 0.004, w.look("metal"), solid=False)
+        w.cylinder((0.045, y), (1.13, 1.23), 0.004, w.look("metal"), solid=False)
         w.mesh(_garment(high, dress=side < 0), (0.045, y, 1.16 - high), w.new_look("bright"), solid=False)
 
 
@@ -240,7 +240,7 @@ def sweater(w: Workbench) -> None:
 def clothes_heap(w: Workbench) -> None:
     """Builds a heap of clothes on the floor: crossed shirts, trousers over them, and a crumpled piece on top."""
     for turn, z, high in ((0.3, 0.025, 0.60), (2.2, 0.065, 0.58)):
-        at = (0.5 * high * math.cos(turn), 0.5 * high * math.sin(turn), z)
+        at = (*polar(0.5 * high, turn), z)
         w.mesh(_garment(high), at, w.new_look("bright"), tilt=-0.5 * math.pi, turn=turn, solid=z < 0.05)
     trousers = w.new_look("denim")
     leg = pillow((0.62, 0.17, 0.07), 5.0)

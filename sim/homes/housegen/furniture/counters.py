@@ -11,7 +11,7 @@ import math
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, inset
 from sim.homes.housegen.furniture.shapes import chamfered_box, drape
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
@@ -37,7 +37,7 @@ def _run_base(w: Workbench, x: Range, y: Range, z: float, look: Look, hole: tupl
 def _free_tops(w: Workbench, x: Range, free: list[Range], z: float, *, back: float = 0.05) -> None:
     """Declares the parts of a worktop without sink and hob as surfaces on which objects may stand."""
     for span in free:
-        w.top((x[0] + back, x[1] - 0.05), (span[0] + 0.05, span[1] - 0.05), z)
+        w.top(inset(x, back, 0.05), inset(span, 0.05), z)
 
 
 def kitchen_run(w: Workbench) -> None:
@@ -68,15 +68,15 @@ def island(w: Workbench) -> None:
     width, depth, height = w.width(1.40, 2.40), w.depth(0.85, 1.05), w.height(0.88, 0.92)
     body, top = w.look("lacquer"), w.look("stone")
     x, y = parts.footprint(depth, width)
-    w.box((x[0] + 0.02, x[1] - 0.28), (y[0] + 0.03, y[1] - 0.03), (0.08, height - 0.045), body)
-    w.box((x[0] + 0.08, x[1] - 0.32), (y[0] + 0.08, y[1] - 0.08), (0.0, 0.08), w.look("dark"))
+    w.box(inset(x, 0.02, 0.28), inset(y, 0.03), (0.08, height - 0.045), body)
+    w.box(inset(x, 0.08, 0.32), inset(y, 0.08), (0.0, 0.08), w.look("dark"))
     w.box(x, y, (height - 0.045, height), top)
     panels = max(2, round(width / 0.6))
     pitch = (width - 0.06) / panels
     for i in range(panels):
         y0 = y[0] + 0.03 + i * pitch
         w.box((x[1] - 0.28, x[1] - 0.265), (y0 + 0.03, y0 + pitch - 0.03), (0.14, height - 0.10), body, solid=False)
-    w.top((x[0] + 0.1, x[1] - 0.1), (y[0] + 0.1, y[1] - 0.1), height)
+    w.top(inset(x, 0.1), inset(y, 0.1), height)
 
 
 def open_run(w: Workbench) -> None:
@@ -86,8 +86,8 @@ def open_run(w: Workbench) -> None:
     x, y = parts.footprint(depth, width)
     hole, free = parts.worktop_fittings(w, y, height)
     parts.worktop(w, x, y, (height - _TOP, height), wood, hole)
-    w.legs((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.01, y[1] - 0.01), (0.0, height - _TOP), 0.045, steel)
-    w.box((x[0] + 0.02, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.18, 0.205), wood)
+    w.legs(inset(x, 0.01, 0.02), inset(y, 0.01), (0.0, height - _TOP), 0.045, steel)
+    w.box(inset(x, 0.02, 0.03), inset(y, 0.03), (0.18, 0.205), wood)
     low = high = math.inf
     if hole is not None:
         low, high = hole[1][0] - 0.04, hole[1][1] + 0.04
@@ -95,11 +95,11 @@ def open_run(w: Workbench) -> None:
             low = y[0] + 0.07
         if y[1] - high < _OPEN_BAY:
             high = y[1] - 0.07
-        body = (x[0] + 0.01, x[1] - 0.045)
+        body = inset(x, 0.01, 0.045)
         w.box((body[0], body[1] - 0.05), (low, high), (0.0, 0.08), w.look("dark"))
         w.box(body, (low, high), (0.08, height - 0.20), front)
         for side in (low, high):  # cheeks hide the bowl of the sink between the cupboard and the top
-            w.box(body, (side - 0.01, side + 0.01), (height - 0.20, height - _TOP), front)
+            w.box(body, around(side, 0.01), (height - 0.20, height - _TOP), front)
         count = 1 + (high - low > 0.5)
         parts.plain_doors(w, body[1], (low, high), (0.085, height - _TOP - 0.01), count, front, steel, "bar")
     count = min(3, int((width - 0.02) / 0.38))
@@ -135,15 +135,15 @@ def breakfast_bar(w: Workbench) -> None:
     body, top = w.look("wood"), w.look("stone")
     x, y = parts.footprint(depth, width)
     wall = x[1] - 0.26
-    w.box((x[0] + 0.03, wall), (y[0] + 0.02, y[1] - 0.02), (0.08, height - 0.035), body)
-    w.box((x[0] + 0.08, wall), (y[0] + 0.06, y[1] - 0.06), (0.0, 0.08), w.look("dark"))
+    w.box((x[0] + 0.03, wall), inset(y, 0.02), (0.08, height - 0.035), body)
+    w.box((x[0] + 0.08, wall), inset(y, 0.06), (0.0, 0.08), w.look("dark"))
     w.box((x[0], wall), y, (height - 0.035, height), top)
-    w.box((wall, wall + 0.08), (y[0] + 0.02, y[1] - 0.02), (0.0, height + 0.14), body)
+    w.box((wall, wall + 0.08), inset(y, 0.02), (0.0, height + 0.14), body)
     w.box((wall - 0.06, x[1]), y, (height + 0.14, height + 0.18), top)
     parts.plain_drawers(
         w,
         x[0] + 0.03 - parts.FRONT_M,
-        (y[0] + 0.02, y[1] - 0.02),
+        inset(y, 0.02),
         (0.10, height - 0.04),
         2,
         max(2, round(width / 0.6)),
@@ -154,8 +154,8 @@ def breakfast_bar(w: Workbench) -> None:
     slats = max(6, round(width / 0.14))
     for i in range(slats):
         c = y[0] + 0.02 + (i + 0.5) * (width - 0.04) / slats
-        w.box((wall + 0.078, wall + 0.092), (c - 0.045, c + 0.045), (0.06, height + 0.12), body, solid=False)
-    w.top((x[0] + 0.06, wall - 0.1), (y[0] + 0.1, y[1] - 0.1), height)
+        w.box((wall + 0.078, wall + 0.092), around(c, 0.045), (0.06, height + 0.12), body, solid=False)
+    w.top((x[0] + 0.06, wall - 0.1), inset(y, 0.1), height)
 
 
 def trolley(w: Workbench) -> None:
@@ -164,16 +164,16 @@ def trolley(w: Workbench) -> None:
     frame = w.look("lacquer")
     x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.06, height), wood)
-    w.box((x[0] + 0.04, x[1] - 0.04), (y[0] + 0.05, y[1] - 0.05), (height - 0.22, height - 0.06), frame)
+    w.box(inset(x, 0.04), inset(y, 0.05), (height - 0.22, height - 0.06), frame)
     parts.plain_drawers(
-        w, x[1] - 0.04, (y[0] + 0.06, y[1] - 0.06), (height - 0.21, height - 0.065), 1, 2, frame, w.look("metal"), "cup"
+        w, x[1] - 0.04, inset(y, 0.06), (height - 0.21, height - 0.065), 1, 2, frame, w.look("metal"), "cup"
     )
-    w.legs((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.0, height - 0.06), 0.07, frame)
+    w.legs(inset(x, 0.03), inset(y, 0.03), (0.0, height - 0.06), 0.07, frame)
     for z in (0.16, 0.46):
-        w.box((x[0] + 0.04, x[1] - 0.04), (y[0] + 0.04, y[1] - 0.04), (z, z + 0.022), wood)
+        w.box(inset(x, 0.04), inset(y, 0.04), (z, z + 0.022), wood)
     w.mesh(chamfered_box((0.38, 0.40, 0.24), 0.015), (0.0, -0.22 * width, 0.30), w.look("wicker"), solid=False)
     w.cylinder((0.0, 0.2 * width), (0.48, 0.62), 0.12, w.look("steel"), solid=False)
-    w.top((x[0] + 0.1, x[1] - 0.1), (y[0] + 0.1, y[1] - 0.1), height)
+    w.top(inset(x, 0.1), inset(y, 0.1), height)
 
 
 def curtained_run(w: Workbench) -> None:
@@ -190,23 +190,17 @@ def curtained_run(w: Workbench) -> None:
     for i in range(bays + 1):
         c = y[0] + 0.05 + i * pitch
         beside_sink = hole is None or not hole[1][0] - 0.06 < c < hole[1][1] + 0.06
-        w.box((x[0] + 0.03 if beside_sink else x[1] - 0.10, x[1] - 0.03), (c - 0.05, c + 0.05), (0.0, under), pier)
+        w.box((x[0] + 0.03 if beside_sink else x[1] - 0.10, x[1] - 0.03), around(c, 0.05), (0.0, under), pier)
     if width <= 0.3:  # two piers, without a curtain between them
         _free_tops(w, x, free, height)
         return
-    w.rod(
-        (x[1] - 0.05, y[0] + 0.1, under - 0.03),
-        (x[1] - 0.05, y[1] - 0.1, under - 0.03),
-        0.008,
-        w.look("iron"),
-        solid=False,
-    )
+    w.rod_y((x[1] - 0.05, under - 0.03), inset(y, 0.1), 0.008, w.look("iron"), solid=False)
     for i in range(bays):
         c = y[0] + 0.05 + (i + 0.5) * pitch
         w.mesh(
             drape(round(pitch - 0.11, 3), round(under - 0.08, 3), 0.035, 6), (x[1] - 0.07, c, 0.05), cloth, solid=False
         )
-    w.box((x[0] + 0.03, x[1] - 0.10), (y[0] + 0.1, y[1] - 0.1), (0.0, 0.45), w.look("dark"))
+    w.box(inset(x, 0.03, 0.10), inset(y, 0.1), (0.0, 0.45), w.look("dark"))
     _free_tops(w, x, free, height)
 
 
@@ -219,19 +213,12 @@ def waterfall(w: Workbench) -> None:
         low, high = sorted((side * 0.5 * width, side * (0.5 * width - 0.06)))
         w.box(x, (low, high), (0.0, height - 0.06), stone)
     body = w.look("lacquer")
-    w.box((x[0] + 0.04, x[1] - 0.30), (y[0] + 0.06, y[1] - 0.06), (0.08, height - 0.06), body)
-    w.box((x[0] + 0.10, x[1] - 0.36), (y[0] + 0.06, y[1] - 0.06), (0.0, 0.08), w.look("dark"))
+    w.box(inset(x, 0.04, 0.30), inset(y, 0.06), (0.08, height - 0.06), body)
+    w.box(inset(x, 0.10, 0.36), inset(y, 0.06), (0.0, 0.08), w.look("dark"))
     parts.plain_doors(
-        w,
-        x[1] - 0.30,
-        (y[0] + 0.07, y[1] - 0.07),
-        (0.09, height - 0.07),
-        max(2, round(width / 0.6)),
-        body,
-        w.look("brass"),
-        "none",
+        w, x[1] - 0.30, inset(y, 0.07), (0.09, height - 0.07), max(2, round(width / 0.6)), body, w.look("brass"), "none"
     )
-    w.top((x[0] + 0.1, x[1] - 0.1), (y[0] + 0.1, y[1] - 0.1), height)
+    w.top(inset(x, 0.1), inset(y, 0.1), height)
 
 
 STYLES = (

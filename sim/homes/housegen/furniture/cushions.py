@@ -27,9 +27,9 @@ def lumbar_cushion(w: Workbench) -> None:
 def bolster(w: Workbench) -> None:
     """Builds a cylindrical cushion."""
     half, r = 0.5 * w.length(0.40, 0.55), w.length(0.08, 0.10)
-    w.rod((0.0, -half, r), (0.0, half, r), r, w.look("bright"))
+    w.rod_y((0.0, r), (-half, half), r, w.look("bright"))
     for side in (-1, 1):
-        w.rod((0.0, side * half, r), (0.0, side * (half + 0.006), r), 0.4 * r, w.look("dark"), solid=False)
+        w.rod_y((0.0, r), (side * half, side * (half + 0.006)), 0.4 * r, w.look("dark"), solid=False)
 
 
 def floor_cushion(w: Workbench) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset, polar
 from sim.homes.housegen.furniture.parts.leaves import Body, joined, tube
 from sim.homes.housegen.furniture.shapes import Ring, loft
 from sim.homes.housegen.furniture.workbench import Range, Workbench
@@ -36,13 +36,13 @@ def _opening(w: Workbench, x: Range, half: float, z: Range, outer: float, top: f
         w.box((x[0] + 0.04, x[1]), (-half, half), (0.0, z[0]), look)
     for side in BOTH_SIDES:
         edge = side * (half - 0.004)
-        w.box((x[0] + 0.04, x[1] - 0.02), (edge - 0.004, edge + 0.004), z, char, solid=False)
+        w.box(inset(x, 0.04, 0.02), around(edge, 0.004), z, char, solid=False)
 
 
 def _logs(w: Workbench, x: float, z: float, half: float) -> None:
     """Adds logs on a grate and one or two flames."""
     wood = w.look("wood")
-    w.rod((x, -0.6 * half, z + 0.05), (x, 0.6 * half, z + 0.05), 0.05, wood)
+    w.rod_y((x, z + 0.05), (-0.6 * half, 0.6 * half), 0.05, wood)
     w.rod((x - 0.06, -0.5 * half, z + 0.13), (x + 0.05, 0.5 * half, z + 0.13), 0.042, wood)
     if w.chance(0.6):
         tongues = ((-0.35 * half, 0.17, 0.05), (-0.08 * half, 0.30, 0.065), (0.28 * half, 0.22, 0.055))
@@ -59,7 +59,7 @@ def mantel(w: Workbench) -> None:
     w.box((0.0, depth + 0.03), (-outer - 0.02, outer + 0.02), (top - 0.09, top - 0.05), look, solid=False)
     for side in BOTH_SIDES:
         c = side * (half + 0.5 * (outer - half))
-        w.box((depth, depth + 0.025), (c - 0.06, c + 0.06), (0.0, top - 0.09), look, solid=False)
+        w.box((depth, depth + 0.025), around(c, 0.06), (0.0, top - 0.09), look, solid=False)
     w.box((depth, depth + 0.32), (-outer, outer), (0.0, 0.04), w.look("stone"))
     _logs(w, 0.5 * depth + 0.03, 0.0, half)
     w.top((0.05, depth + 0.03), (-outer, outer), top)
@@ -68,22 +68,14 @@ def mantel(w: Workbench) -> None:
 def stove_iron(w: Workbench) -> None:
     """Builds an iron stove on legs with a glazed door and a flue pipe to the ceiling."""
     iron, width, depth = w.look("iron"), w.length(0.48, 0.60), w.length(0.40, 0.46)
-    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.22, 0.82), iron)
-    w.legs(
-        (-0.5 * depth + 0.02, 0.5 * depth - 0.02), (-0.5 * width + 0.02, 0.5 * width - 0.02), (0.0, 0.23), 0.05, iron
-    )
+    w.box(centred(depth), centred(width), (0.22, 0.82), iron)
+    w.legs(centred(depth, 0.02), centred(width, 0.02), (0.0, 0.23), 0.05, iron)
     w.box((-0.5 * depth - 0.02, 0.5 * depth + 0.03), (-0.5 * width - 0.03, 0.5 * width + 0.03), (0.82, 0.85), iron)
     w.box((0.5 * depth, 0.5 * depth + 0.02), (-0.38 * width, 0.38 * width), (0.30, 0.74), iron, solid=False)
     front = 0.5 * depth + 0.02
     w.box((front, front + 0.006), (-0.29 * width, 0.29 * width), (0.37, 0.67), w.look("char"), solid=False)
     flames(w, front, 0.38, ((-0.15 * width, 0.15, 0.035), (0.0, 0.24, 0.045), (0.14 * width, 0.18, 0.035)))
-    w.rod(
-        (0.5 * depth + 0.035, 0.34 * width, 0.46),
-        (0.5 * depth + 0.035, 0.34 * width, 0.58),
-        0.012,
-        w.look("brass"),
-        solid=False,
-    )
+    w.cylinder((0.5 * depth + 0.035, 0.34 * width), (0.46, 0.58), 0.012, w.look("brass"), solid=False)
     w.cylinder((-0.05, 0.0), (0.84, 2.30), 0.075, iron)
     w.box(
         (-0.5 * depth - 0.08, 0.5 * depth + 0.30),
@@ -131,7 +123,7 @@ def rustic_stone(w: Workbench) -> None:
     w.box((0.0, depth + 0.14), (-outer - 0.08, outer + 0.08), (top - 0.09, top), w.look("wood"))
     for side in BOTH_SIDES:
         c = side * (outer - 0.16)
-        w.box((depth, depth + 0.09), (c - 0.06, c + 0.06), (top - 0.22, top - 0.09), stone, solid=False)
+        w.box((depth, depth + 0.09), around(c, 0.06), (top - 0.22, top - 0.09), stone, solid=False)
     w.box((depth, depth + 0.38), (-outer, outer), (0.0, 0.06), w.look("stone"))
     w.box((depth - 0.10, depth - 0.08), (-half + 0.03, half - 0.03), (0.0, 0.30), w.look("iron"), solid=False)
     _logs(w, 0.45 * depth, 0.0, half)
@@ -147,11 +139,11 @@ def electric(w: Workbench) -> None:
     w.box((0.0, depth), (-outer, outer), (0.0, 0.08), wood)
     w.box((0.0, 0.015), (-outer, outer), (0.08, top - 0.04), wood)
     for c in (-outer + 0.0125, -half - 0.0125, half + 0.0125, outer - 0.0125):
-        w.box((0.015, depth), (c - 0.0125, c + 0.0125), (0.08, top - 0.04), wood)
+        w.box((0.015, depth), around(c, 0.0125), (0.08, top - 0.04), wood)
     w.box((0.015, depth), (-half, half), (0.08 + high, top - 0.04), wood)
     w.box((0.015, depth - 0.03), (-half, half), (0.08, 0.08 + high), w.look("char"))
     flames(w, depth - 0.04, 0.14, [((i - 2) * 0.11, 0.18 + 0.07 * ((2 * i) % 3), 0.045) for i in range(5)])
-    w.rod((depth - 0.03, -0.28, 0.13), (depth - 0.03, 0.28, 0.13), 0.028, w.look("wood"), solid=False)
+    w.rod_y((depth - 0.03, 0.13), (-0.28, 0.28), 0.028, w.look("wood"), solid=False)
     for side in BOTH_SIDES:
         low, high_ = sorted((side * (half + 0.025), side * (outer - 0.025)))
         w.box((0.015, depth - 0.01), (low, high_), (0.46, 0.48), wood)
@@ -185,22 +177,10 @@ def suspended(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (1.30, top), 0.09, iron)
     for i in range(3):
         a = math.tau * i / 3 + 0.5
-        w.rod(
-            (0.88 * r * math.cos(a), 0.88 * r * math.sin(a), 0.42),
-            (0.88 * r * math.cos(a), 0.88 * r * math.sin(a), 0.90),
-            0.012,
-            iron,
-            solid=False,
-        )
+        w.rod((*polar(0.88 * r, a), 0.42), (*polar(0.88 * r, a), 0.90), 0.012, iron, solid=False)
     wood = w.look("wood")
     for a in (0.3, 1.4, 2.5):
-        w.rod(
-            (-0.5 * r * math.cos(a), -0.5 * r * math.sin(a), 0.42),
-            (0.5 * r * math.cos(a), 0.5 * r * math.sin(a), 0.46),
-            0.04,
-            wood,
-            solid=False,
-        )
+        w.rod((*polar(-0.5 * r, a), 0.42), (*polar(0.5 * r, a), 0.46), 0.04, wood, solid=False)
     flames(w, 0.0, 0.46, ((-0.09, 0.2, 0.055), (0.0, 0.34, 0.075), (0.1, 0.24, 0.055)))
 
 
@@ -215,10 +195,10 @@ def tiled_stove(w: Workbench) -> None:
     w.box((0.0, depth - 0.05), (-half + 0.05, half - 0.05), (2.0, 2.06), tile)
     grout = w.look("linen")
     for z in (0.65, 0.88, 1.12):
-        w.box((depth - 0.003, depth + 0.003), (-half, half), (z - 0.006, z + 0.006), grout, solid=False)
+        w.box(around(depth, 0.003), (-half, half), around(z, 0.006), grout, solid=False)
     for i in range(1, 4):
         c = -half + i * width / 4
-        w.box((depth - 0.003, depth + 0.003), (c - 0.006, c + 0.006), (0.42, 1.35), grout, solid=False)
+        w.box(around(depth, 0.003), around(c, 0.006), (0.42, 1.35), grout, solid=False)
     w.box((depth + 0.20, depth + 0.23), (-0.15, 0.15), (0.10, 0.34), w.look("iron"), solid=False)
     w.box((depth + 0.225, depth + 0.233), (-0.11, 0.11), (0.13, 0.31), w.look("char"), solid=False)
     flames(w, depth + 0.225, 0.135, ((-0.05, 0.11, 0.022), (0.01, 0.15, 0.026), (0.06, 0.1, 0.02)))

@@ -9,6 +9,7 @@ import itertools
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.parts import around, polar
 from sim.homes.housegen.furniture.shapes import Ring, loft
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -17,7 +18,7 @@ def pendant(w: Workbench) -> None:
     """Builds a ceiling lamp with a shade on a cord."""
     r, drop = 0.5 * w.length(0.32, 0.50), w.length(0.40, 0.70)
     w.cylinder((0.0, 0.0), (-0.03, 0.0), 0.05, w.look("iron"), solid=False)
-    w.rod((0.0, 0.0, -drop), (0.0, 0.0, -0.02), 0.005, w.look("dark"), solid=False)
+    w.cylinder((0.0, 0.0), (-drop, -0.02), 0.005, w.look("dark"), solid=False)
     w.mesh(
         loft(
             [Ring(-drop - 0.20, r, r), Ring(-drop - 0.02, 0.35 * r, 0.35 * r), Ring(-drop + 0.02, 0.12 * r, 0.12 * r)],
@@ -43,7 +44,7 @@ def globe_pendant(w: Workbench) -> None:
     w.box((-0.04, 0.04), (-0.35, 0.35), (-0.03, 0.0), w.look("brass"), solid=False)
     for i in range(3):
         drop, y = w.length(0.25, 0.60), (i - 1) * 0.28
-        w.rod((0.0, y, -drop), (0.0, y, -0.02), 0.004, w.look("dark"), solid=False)
+        w.cylinder((0.0, y), (-drop, -0.02), 0.004, w.look("dark"), solid=False)
         w.ball((0.0, y, -drop - 0.09), 0.10, w.look("glow"), solid=False)
 
 
@@ -63,13 +64,7 @@ def tripod_lamp(w: Workbench) -> None:
     tall, wood, r = w.length(1.40, 1.60), w.look("wood"), 0.5 * w.length(0.40, 0.48)
     for i in range(3):
         a = math.tau * i / 3
-        w.rod(
-            (0.26 * math.cos(a), 0.26 * math.sin(a), 0.013),
-            (0.02 * math.cos(a), 0.02 * math.sin(a), tall - 0.26),
-            0.014,
-            wood,
-            round_ends=True,
-        )
+        w.rod((*polar(0.26, a), 0.013), (*polar(0.02, a), tall - 0.26), 0.014, wood, round_ends=True)
     w.cylinder((0.0, 0.0), (tall - 0.30, tall), r, w.look("shade"))
     w.cylinder((0.0, 0.0), (tall - 0.305, tall - 0.295), 0.85 * r, w.look("glow"), solid=False)
 
@@ -121,11 +116,11 @@ def chandelier(w: Workbench) -> None:
     """Builds a chandelier with six candle arms around a hub."""
     metal, glow, drop = w.look("brass"), w.look("glow"), w.length(0.40, 0.60)
     w.cylinder((0.0, 0.0), (-0.03, 0.0), 0.06, metal, solid=False)
-    w.rod((0.0, 0.0, -drop), (0.0, 0.0, -0.02), 0.008, metal, solid=False)
+    w.cylinder((0.0, 0.0), (-drop, -0.02), 0.008, metal, solid=False)
     w.ellipsoid((0.0, 0.0, -drop), (0.05, 0.05, 0.08), metal, solid=False)
     for i in range(6):
         a = math.tau * i / 6
-        tip = (0.30 * math.cos(a), 0.30 * math.sin(a), -drop)
+        tip = (*polar(0.30, a), -drop)
         w.rod((0.0, 0.0, -drop - 0.05), tip, 0.008, metal, solid=False, round_ends=True)
         w.rod(tip, (tip[0], tip[1], -drop + 0.14), 0.014, glow, solid=False, round_ends=True)
 
@@ -136,7 +131,7 @@ def spot_rail(w: Workbench) -> None:
     w.box((-0.025, 0.025), (-0.40, 0.40), (-0.03, 0.0), metal, solid=False)
     for i in range(3):
         y, a = (i - 1) * 0.28, 0.5 * (i - 1)
-        w.rod((0.0, y, -0.09), (0.0, y, -0.02), 0.008, metal, solid=False)
+        w.cylinder((0.0, y), (-0.09, -0.02), 0.008, metal, solid=False)
         tip = (0.06, y + 0.10 * math.sin(a), -0.16)
         w.rod((-0.02, y, -0.09), tip, 0.042, metal, solid=False)
         w.rod(tip, (tip[0] + 0.004, tip[1], tip[2] - 0.004), 0.034, w.look("glow"), solid=False)
@@ -170,7 +165,7 @@ def reading_lamp(w: Workbench) -> None:
     """Builds a slim floor lamp with a jointed arm and a cone."""
     metal, high = w.look("iron"), w.length(1.25, 1.40)
     w.cylinder((0.0, 0.0), (0.0, 0.02), 0.13, metal)
-    w.rod((0.0, 0.0, 0.015), (0.0, 0.0, high), 0.010, metal)
+    w.cylinder((0.0, 0.0), (0.015, high), 0.010, metal)
     w.rod((0.0, 0.0, high - 0.01), (0.28, 0.0, high + 0.14), 0.009, metal, round_ends=True)
     w.mesh(
         loft([Ring(-0.14, 0.085, 0.085), Ring(0.0, 0.03, 0.03), Ring(0.03, 0.025, 0.025)], 14, hull=True),
@@ -178,7 +173,7 @@ def reading_lamp(w: Workbench) -> None:
         metal,
         tilt=-0.35,
     )
-    w.cylinder((0.325, 0.0), (high - 0.005, high + 0.005), 0.06, w.look("glow"), solid=False)
+    w.cylinder((0.325, 0.0), around(high, 0.005), 0.06, w.look("glow"), solid=False)
 
 
 def desk_lamp(w: Workbench) -> None:
@@ -224,9 +219,9 @@ def swing_sconce(w: Workbench) -> None:
     """Builds a wall lamp with a shade on a swinging arm."""
     w.mount_height_m = 1.35
     brass = w.look("brass")
-    w.rod((0.0, 0.0, 0.12), (0.02, 0.0, 0.12), 0.05, brass, solid=False)
-    w.rod((0.02, 0.0, 0.12), (0.24, 0.0, 0.12), 0.008, brass, solid=False, round_ends=True)
-    w.rod((0.24, 0.0, 0.10), (0.24, 0.0, 0.16), 0.010, brass, solid=False)
+    w.rod_x((0.0, 0.12), (0.0, 0.02), 0.05, brass, solid=False)
+    w.rod_x((0.0, 0.12), (0.02, 0.24), 0.008, brass, solid=False, round_ends=True)
+    w.cylinder((0.24, 0.0), (0.10, 0.16), 0.010, brass, solid=False)
     w.mesh(
         loft([Ring(0.0, 0.10, 0.10), Ring(0.17, 0.065, 0.065)], 14, hull=True),
         (0.24, 0.0, 0.05),

@@ -11,7 +11,7 @@ import math
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset, polar
 from sim.homes.housegen.furniture.shapes import hoop
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -21,8 +21,8 @@ def coffee_shelf(w: Workbench) -> None:
     width, depth, height = w.width(0.90, 1.25), w.depth(0.50, 0.65), w.length(0.40, 0.47)
     wood = w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.035, height), wood)
-    w.legs((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.01), (0.0, height - 0.035), 0.05, wood)
-    w.box((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.13, 0.15), wood)
+    w.legs(inset(x, 0.01), inset(y, 0.01), (0.0, height - 0.035), 0.05, wood)
+    w.box(inset(x, 0.03), inset(y, 0.03), (0.13, 0.15), wood)
 
 
 def coffee_drum(w: Workbench) -> None:
@@ -39,20 +39,20 @@ def coffee_glass(w: Workbench) -> None:
     width, depth, height, metal = w.width(0.90, 1.20), w.depth(0.55, 0.70), w.length(0.38, 0.45), w.look("brass")
     x, y = parts.slab(w, depth, width, (height - 0.012, height), w.look("glass"))
     w.legs(x, y, (0.0, height - 0.012), 0.02, metal)
-    w.box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.118, 0.13), w.look("wood"))
+    w.box(inset(x, 0.02), inset(y, 0.02), (0.118, 0.13), w.look("wood"))
     for z in (height - 0.022, 0.12):
         for side in BOTH_SIDES:
             w.box(
                 x,
                 (side * 0.5 * width - 0.01 - 0.01 * side, side * 0.5 * width + 0.01 - 0.01 * side),
-                (z - 0.01, z + 0.01),
+                around(z, 0.01),
                 metal,
                 solid=False,
             )
             w.box(
                 (side * 0.5 * depth - 0.01 - 0.01 * side, side * 0.5 * depth + 0.01 - 0.01 * side),
                 y,
-                (z - 0.01, z + 0.01),
+                around(z, 0.01),
                 metal,
                 solid=False,
             )
@@ -64,9 +64,9 @@ def coffee_hairpin(w: Workbench) -> None:
     parts.round_top(w, radius, (height - 0.04, height), w.look("wood"))
     for i in range(3):
         a = math.tau * i / 3 + 0.5
-        foot = (0.78 * radius * math.cos(a), 0.78 * radius * math.sin(a), 0.006)
+        foot = (*polar(0.78 * radius, a), 0.006)
         for turn in (-0.22, 0.22):
-            head = (0.62 * radius * math.cos(a + turn), 0.62 * radius * math.sin(a + turn), height - 0.04)
+            head = (*polar(0.62 * radius, a + turn), height - 0.04)
             w.rod(foot, head, 0.006, iron, round_ends=True)
 
 
@@ -76,7 +76,7 @@ def coffee_blocks(w: Workbench) -> None:
     parts.slab(w, depth, width, (height - 0.05, height), stone)
     for side in BOTH_SIDES:
         y = side * 0.28 * width
-        w.box((-0.36 * depth, 0.36 * depth), (y - 0.07, y + 0.07), (0.0, height - 0.05), stone)
+        w.box((-0.36 * depth, 0.36 * depth), around(y, 0.07), (0.0, height - 0.05), stone)
 
 
 def side_tripod(w: Workbench) -> None:
@@ -101,9 +101,9 @@ def side_cube(w: Workbench) -> None:
     depth = w.depth(0.35, 0.45)
     x, y = parts.slab(w, depth, width, (height - 0.02, height), wood)
     for side in BOTH_SIDES:
-        w.box(x, (side * (0.5 * width - 0.01) - 0.01, side * (0.5 * width - 0.01) + 0.01), (0.0, height - 0.02), wood)
-    w.box((x[0], x[1] - 0.01), (y[0] + 0.02, y[1] - 0.02), (0.16, 0.18), wood)
-    w.box((x[0], x[0] + 0.01), (y[0] + 0.02, y[1] - 0.02), (0.18, height - 0.02), wood)
+        w.box(x, around(side * (0.5 * width - 0.01), 0.01), (0.0, height - 0.02), wood)
+    w.box((x[0], x[1] - 0.01), inset(y, 0.02), (0.16, 0.18), wood)
+    w.box((x[0], x[0] + 0.01), inset(y, 0.02), (0.18, height - 0.02), wood)
 
 
 def bedside_legs(w: Workbench) -> None:
@@ -111,11 +111,11 @@ def bedside_legs(w: Workbench) -> None:
     width, depth, height = w.width(0.40, 0.52), w.depth(0.36, 0.44), w.length(0.48, 0.62)
     wood, legs = w.look("lacquer") if w.chance(0.4) else w.look("wood"), w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.02, height), wood)
-    w.box((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.01, y[1] - 0.01), (height - 0.20, height - 0.02), wood)
+    w.box(inset(x, 0.01, 0.02), inset(y, 0.01), (height - 0.20, height - 0.02), wood)
     parts.plain_drawers(
         w,
         x[1] - 0.02,
-        (y[0] + 0.01, y[1] - 0.01),
+        inset(y, 0.01),
         (height - 0.195, height - 0.025),
         1,
         1,
@@ -123,7 +123,7 @@ def bedside_legs(w: Workbench) -> None:
         w.look("brass"),
         w.choice(("knob", "bar")),
     )
-    w.legs((x[0] + 0.03, x[1] - 0.04), (y[0] + 0.03, y[1] - 0.03), (0.0, height - 0.19), 0.03, legs, splay=0.015)
+    w.legs(inset(x, 0.03, 0.04), inset(y, 0.03), (0.0, height - 0.19), 0.03, legs, splay=0.015)
 
 
 def bedside_wire(w: Workbench) -> None:
@@ -133,12 +133,7 @@ def bedside_wire(w: Workbench) -> None:
     n = 8
     for i in range(n):
         a = math.tau * i / n
-        w.rod(
-            (0.72 * radius * math.cos(a), 0.72 * radius * math.sin(a), 0.0),
-            (0.92 * radius * math.cos(a), 0.92 * radius * math.sin(a), height - 0.01),
-            0.005,
-            iron,
-        )
+        w.rod((*polar(0.72 * radius, a), 0.0), (*polar(0.92 * radius, a), height - 0.01), 0.005, iron)
     w.cylinder((0.0, 0.0), (0.0, 0.012), 0.75 * radius, iron)
 
 
@@ -147,11 +142,11 @@ def console(w: Workbench) -> None:
     width, depth, height = w.width(0.90, 1.30), w.depth(0.30, 0.40), w.length(0.76, 0.84)
     wood = w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.025, height), wood)
-    w.box((x[0] + 0.01, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (height - 0.15, height - 0.025), wood)
+    w.box(inset(x, 0.01, 0.03), inset(y, 0.03), (height - 0.15, height - 0.025), wood)
     parts.plain_drawers(
-        w, x[1] - 0.03, (y[0] + 0.04, y[1] - 0.04), (height - 0.145, height - 0.03), 1, 2, wood, w.look("brass"), "knob"
+        w, x[1] - 0.03, inset(y, 0.04), (height - 0.145, height - 0.03), 1, 2, wood, w.look("brass"), "knob"
     )
-    w.legs((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.0, height - 0.025), 0.04, wood)
+    w.legs(inset(x, 0.01, 0.02), inset(y, 0.02), (0.0, height - 0.025), 0.04, wood)
 
 
 def console_arc(w: Workbench) -> None:
@@ -160,9 +155,9 @@ def console_arc(w: Workbench) -> None:
     parts.slab(w, depth, width, (height - 0.03, height), w.look("stone"))
     for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.10)
-        w.box((-0.5 * depth + 0.02, 0.5 * depth - 0.02), (y - 0.012, y + 0.012), (0.0, 0.025), metal)
-        for x in (-0.5 * depth + 0.03, 0.5 * depth - 0.03):
-            w.box((x - 0.012, x + 0.012), (y - 0.012, y + 0.012), (0.0, height - 0.03), metal)
+        w.box(centred(depth, 0.02), around(y, 0.012), (0.0, 0.025), metal)
+        for x in centred(depth, 0.03):
+            w.box(around(x, 0.012), around(y, 0.012), (0.0, height - 0.03), metal)
     w.rod(
         (-0.5 * depth + 0.03, -0.5 * width + 0.10, 0.02),
         (-0.5 * depth + 0.03, 0.5 * width - 0.10, height - 0.04),
@@ -177,19 +172,13 @@ def console_drawers(w: Workbench) -> None:
     wood, metal = w.look("wood"), w.look("brass")
     x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.025, height), wood)
-    w.box((x[0] + 0.02, x[1] - 0.025), (y[0] + 0.02, y[1] - 0.02), (height - 0.16, height - 0.025), wood)
+    w.box(inset(x, 0.02, 0.025), inset(y, 0.02), (height - 0.16, height - 0.025), wood)
     for side in BOTH_SIDES:
         c = side * 0.24 * width
-        w.box(
-            (x[1] - 0.025, x[1] - 0.012),
-            (c - 0.2 * width, c + 0.2 * width),
-            (height - 0.15, height - 0.035),
-            wood,
-            solid=False,
-        )
+        w.box((x[1] - 0.025, x[1] - 0.012), around(c, 0.2 * width), (height - 0.15, height - 0.035), wood, solid=False)
         w.ball((x[1] - 0.004, c, height - 0.09), 0.014, metal, solid=False)
-    w.legs((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.0, height - 0.15), 0.045, wood, round_=True)
-    w.box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.14, 0.16), wood)
+    w.legs(inset(x, 0.03), inset(y, 0.03), (0.0, height - 0.15), 0.045, wood, round_=True)
+    w.box(inset(x, 0.02), inset(y, 0.02), (0.14, 0.16), wood)
     w.top(x, y, height)
 
 
@@ -199,12 +188,7 @@ def drum_stool_table(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (height - 0.03, height), r, wood)
     for n in range(3):
         a = math.tau * n / 3
-        w.rod(
-            (0.8 * r * math.cos(a), 0.8 * r * math.sin(a), 0.0),
-            (0.6 * r * math.cos(a), 0.6 * r * math.sin(a), height - 0.03),
-            0.012,
-            metal,
-        )
+        w.rod((*polar(0.8 * r, a), 0.0), (*polar(0.6 * r, a), height - 0.03), 0.012, metal)
     w.mesh(hoop(0.78 * r, 0.02, 0.02), (0.0, 0.0, 0.12), metal, solid=False)
     half = 0.62 * r
     w.top((-half, half), (-half, half), height)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
 from sim.homes.housegen.furniture.pictures import frame
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -18,15 +18,15 @@ def wall_mirror(w: Workbench) -> None:
     width, height = w.width(0.45, 0.80), w.height(0.60, 1.00)
     w.mount_height_m = 1.05
     frame(w, width, height, 0.025, 0.028, w.look("metal"))
-    w.box((0.0, 0.014), (-0.5 * width + 0.02, 0.5 * width - 0.02), (0.02, height - 0.02), w.look("mirror"), solid=False)
+    w.box((0.0, 0.014), centred(width, 0.02), (0.02, height - 0.02), w.look("mirror"), solid=False)
 
 
 def round_mirror(w: Workbench) -> None:
     """Builds a round mirror in a thin rim."""
     r = 0.5 * w.width(0.50, 0.80)
     w.mount_height_m = 1.52 - r
-    w.rod((0.0, 0.0, r), (0.022, 0.0, r), r, w.look("brass"))
-    w.rod((0.0, 0.0, r), (0.025, 0.0, r), r - 0.02, w.look("mirror"), solid=False)
+    w.rod_x((0.0, r), (0.0, 0.022), r, w.look("brass"))
+    w.rod_x((0.0, r), (0.0, 0.025), r - 0.02, w.look("mirror"), solid=False)
 
 
 def standing_mirror(w: Workbench) -> None:
@@ -38,7 +38,7 @@ def standing_mirror(w: Workbench) -> None:
         w.bar((0.14, side * (y - 0.02), 0.0), (0.14 - lean, side * (y - 0.02), height), 0.04, 0.03, wood)
     for z in (0.12, height - 0.03):
         x = 0.14 - lean * z / height
-        w.box((x - 0.015, x + 0.015), (-y, y), (z - 0.025, z + 0.025), wood)
+        w.box(around(x, 0.015), (-y, y), around(z, 0.025), wood)
     w.bar((0.137, 0.0, 0.12), (0.143 - lean, 0.0, height - 0.04), 2 * y - 0.06, 0.012, w.look("mirror"))
     w.bar((-0.22, 0.0, 0.0), (0.04, 0.0, 0.72 * height), 0.05, 0.02, wood)
     w.box((0.04, 0.07), (-y + 0.02, y - 0.02), (0.70 * height, 0.73 * height), wood)
@@ -50,9 +50,9 @@ def arched_mirror(w: Workbench) -> None:
     r, metal = 0.5 * width, w.look("metal")
     straight = height - r
     w.box((0.0, 0.03), (-r, r), (0.0, straight), metal)
-    w.rod((0.0, 0.0, straight), (0.03, 0.0, straight), r, metal)
+    w.rod_x((0.0, straight), (0.0, 0.03), r, metal)
     w.box((0.02, 0.034), (-r + 0.02, r - 0.02), (0.02, straight), w.look("mirror"), solid=False)
-    w.rod((0.02, 0.0, straight), (0.034, 0.0, straight), r - 0.02, w.look("mirror"), solid=False)
+    w.rod_x((0.0, straight), (0.02, 0.034), r - 0.02, w.look("mirror"), solid=False)
 
 
 def mirror_sunburst(w: Workbench) -> None:
@@ -60,7 +60,7 @@ def mirror_sunburst(w: Workbench) -> None:
     r, brass = 0.5 * w.width(0.55, 0.80), w.look("brass")
     inner = 0.62 * r
     w.mount_height_m = 1.25
-    w.rod((0.0, 0.0, r), (0.02, 0.0, r), inner, w.look("mirror"))
+    w.rod_x((0.0, r), (0.0, 0.02), inner, w.look("mirror"))
     for n in range(12):
         a = math.tau * n / 12
         tip = (0.012, r * math.sin(a), r + r * math.cos(a))

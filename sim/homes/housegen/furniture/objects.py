@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, polar
 from sim.homes.housegen.furniture.parts.flat_pictures import Page, photograph
 from sim.homes.housegen.furniture.parts.leaves import Body, arch, blade, blossom, joined, tube
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, hoop, loft
@@ -44,7 +44,7 @@ def vase(w: Workbench) -> None:
     flowers: list[Body] = []
     for i in range(5):
         a = math.tau * i / 5
-        tip = (0.07 * math.cos(a), 0.07 * math.sin(a), high + 0.13 + 0.025 * i)
+        tip = (*polar(0.07, a), high + 0.13 + 0.025 * i)
         green.append(tube([(0.0, 0.0, 0.9 * high), tip], (0.003, 0.002), 3))
         green.append(blade(arch((0.0, 0.0, 0.95 * high), a + 0.9, 0.09, 0.10, 0.01), 0.04))
         flowers.append(blossom(tip, (1.5 * tip[0], 1.5 * tip[1], 0.06), 0.042))
@@ -77,7 +77,7 @@ def fruit_bowl(w: Workbench) -> None:
     )
     for i in range(4):
         a = math.tau * i / 3
-        at = (0.45 * r * math.cos(a), 0.45 * r * math.sin(a), 0.07) if i < 3 else (0.0, 0.0, 0.11)
+        at = (*polar(0.45 * r, a), 0.07) if i < 3 else (0.0, 0.0, 0.11)
         w.ball(at, 0.042, w.new_look("paint"), solid=False)
 
 
@@ -104,8 +104,8 @@ def clock(w: Workbench) -> None:
     """Builds a mantel clock."""
     wood = w.look("wood")
     w.box((-0.05, 0.05), (-0.12, 0.12), (0.0, 0.12), wood)
-    w.rod((-0.045, 0.0, 0.12), (0.045, 0.0, 0.12), 0.095, wood)
-    w.rod((0.04, 0.0, 0.12), (0.052, 0.0, 0.12), 0.075, w.look("paper"), solid=False)
+    w.rod_x((0.0, 0.12), (-0.045, 0.045), 0.095, wood)
+    w.rod_x((0.0, 0.12), (0.04, 0.052), 0.075, w.look("paper"), solid=False)
     w.bar((0.054, 0.0, 0.12), (0.054, 0.03, 0.155), 0.006, 0.003, w.look("dark"), solid=False)
     w.bar((0.054, 0.0, 0.12), (0.054, -0.01, 0.18), 0.005, 0.003, w.look("dark"), solid=False)
 
@@ -128,13 +128,7 @@ def basket(w: Workbench) -> None:
     w.mesh(hoop(r + 0.010, 0.03, 0.03), (0.0, 0.0, high - 0.005), w.look("wicker"), solid=False)
     w.ellipsoid((0.02, 0.0, high), (0.75 * r, 0.8 * r, 0.06), w.look("bright"), solid=False)
     for side in BOTH_SIDES:
-        w.rod(
-            (0.0, side * (r + 0.012), high - 0.05),
-            (0.0, side * (r + 0.012), high + 0.06),
-            0.010,
-            w.look("leather"),
-            solid=False,
-        )
+        w.cylinder((0.0, side * (r + 0.012)), (high - 0.05, high + 0.06), 0.010, w.look("leather"), solid=False)
 
 
 def place_setting(w: Workbench) -> None:
@@ -154,7 +148,7 @@ def place_setting(w: Workbench) -> None:
         w.look("pot"),
     )
     w.cylinder((0.02, 0.19), (0.0, 0.085), 0.04, w.look("bright"))
-    w.rod((0.02, 0.23, 0.025), (0.02, 0.23, 0.065), 0.006, w.look("bright"), solid=False)
+    w.cylinder((0.02, 0.23), (0.025, 0.065), 0.006, w.look("bright"), solid=False)
 
 
 def bottles(w: Workbench) -> None:
@@ -195,13 +189,13 @@ def suitcase(w: Workbench) -> None:
     w.mesh(chamfered_box((0.25, 0.42, high), 0.04), (0.0, 0.0, 0.05 + 0.5 * high), look)
     for i in range(4):
         y = (i - 1.5) * 0.09
-        w.box((0.12, 0.132), (y - 0.018, y + 0.018), (0.12, high - 0.02), look, solid=False)
+        w.box((0.12, 0.132), around(y, 0.018), (0.12, high - 0.02), look, solid=False)
     for sx in BOTH_SIDES:
         for sy in BOTH_SIDES:
             w.ball((sx * 0.09, sy * 0.16, 0.03), 0.03, dark)
     for y in (-0.08, 0.08):
-        w.rod((-0.08, y, high + 0.03), (-0.08, y, high + 0.38), 0.008, w.look("chrome"))
-    w.rod((-0.08, -0.10, high + 0.38), (-0.08, 0.10, high + 0.38), 0.015, dark, round_ends=True)
+        w.cylinder((-0.08, y), (high + 0.03, high + 0.38), 0.008, w.look("chrome"))
+    w.rod_y((-0.08, high + 0.38), (-0.10, 0.10), 0.015, dark, round_ends=True)
 
 
 STYLES = (

@@ -11,7 +11,7 @@ import math
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around
 from sim.homes.housegen.furniture.shapes import chamfered_box, strip
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -45,9 +45,9 @@ def task_chair(w: Workbench) -> None:
     if w.chance(0.6):
         for side in BOTH_SIDES:
             y = side * (half + 0.025)
-            w.box((-0.02, 0.02), (y - 0.012, y + 0.012), (seat - 0.08, seat + 0.19), dark)
+            w.box((-0.02, 0.02), around(y, 0.012), (seat - 0.08, seat + 0.19), dark)
             w.bar((0.0, y, seat - 0.075), (0.0, side * 0.09, seat - 0.075), 0.03, 0.014, dark)
-            w.box((-0.12, 0.12), (y - 0.035, y + 0.035), (seat + 0.19, seat + 0.215), dark)
+            w.box((-0.12, 0.12), around(y, 0.035), (seat + 0.19, seat + 0.215), dark)
 
 
 def conference_chair(w: Workbench) -> None:
@@ -69,7 +69,7 @@ def conference_chair(w: Workbench) -> None:
         y = side * (half - 0.012)
         for a, b in itertools.pairwise(path[1:]):
             w.rod((a[0], y, a[1] - 0.008), (b[0], y, b[1] - 0.008), 0.012, chrome, round_ends=True)
-        w.rod((0.10, side * half, seat - 0.01), (0.10, side * half, seat + 0.2), 0.01, chrome)
+        w.cylinder((0.10, side * half), (seat - 0.01, seat + 0.2), 0.01, chrome)
         w.bar((0.14, side * half, seat + 0.2), (-0.26, side * half, seat + 0.2), 0.04, 0.02, cover)
     w.box((-0.06, 0.06), (-half + 0.01, half - 0.01), (seat - 0.045, seat - 0.02), chrome)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
 from sim.homes.housegen.furniture.shapes import chamfered_box
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -25,7 +25,7 @@ def digital_piano(w: Workbench) -> None:
         w.bar((-0.02, y - side * 0.28, 0.02), (-0.02, y + side * 0.10, 0.69), 0.04, 0.04, metal)
         w.bar((0.03, y + side * 0.10, 0.02), (0.03, y - side * 0.28, 0.69), 0.04, 0.04, metal)
         for dy in (-0.28, 0.10):
-            w.box((-0.17, 0.17), (y + side * dy - 0.02, y + side * dy + 0.02), (0.0, 0.035), metal)
+            w.box((-0.17, 0.17), around(y + side * dy, 0.02), (0.0, 0.035), metal)
 
 
 def upright_piano(w: Workbench) -> None:
@@ -40,13 +40,13 @@ def upright_piano(w: Workbench) -> None:
     w.box((0.02, 0.28), (-half, half), (0.58, 0.72), look)
     for side in BOTH_SIDES:
         c = side * (half - 0.03)
-        w.box((-0.30, 0.30), (c - 0.03, c + 0.03), (0.0, 0.06), look)
-        w.box((0.22, 0.28), (c - 0.03, c + 0.03), (0.05, 0.60), look)
+        w.box((-0.30, 0.30), around(c, 0.03), (0.0, 0.06), look)
+        w.box((0.22, 0.28), around(c, 0.03), (0.05, 0.60), look)
     w.box((0.11, 0.27), (-half + 0.08, half - 0.08), (0.72, 0.735), w.look("ceramic"), solid=False)
     w.box((0.11, 0.20), (-half + 0.10, half - 0.10), (0.735, 0.745), w.look("char"), solid=False)
     w.box((0.02, 0.05), (-0.40, 0.40), (0.86, 1.04), look, tilt=-0.25, solid=False)
     for y in (-0.1, 0.0, 0.1):
-        w.box((0.02, 0.14), (y - 0.015, y + 0.015), (0.05, 0.065), w.look("brass"), solid=False)
+        w.box((0.02, 0.14), around(y, 0.015), (0.05, 0.065), w.look("brass"), solid=False)
     w.top((-0.25, 0.0), (-half + 0.1, half - 0.1), high + 0.025)
 
 
@@ -67,19 +67,13 @@ def folding_screen(w: Workbench) -> None:
             cloth,
             turn=sign * fold,
         )
-        for t in (-0.5 * panel_m + 0.015, 0.5 * panel_m - 0.015):
-            w.box(
-                (t * dx - 0.014, t * dx + 0.014),
-                (c + t * dy - 0.014, c + t * dy + 0.014),
-                (0.0, high),
-                wood,
-                turn=sign * fold,
-            )
+        for t in centred(panel_m, 0.015):
+            w.box(around(t * dx, 0.014), around(c + t * dy, 0.014), (0.0, high), wood, turn=sign * fold)
         for z in (0.10, high - 0.03):
             w.box(
                 (-0.012, 0.012),
                 (c - 0.5 * panel_m + 0.02, c + 0.5 * panel_m - 0.02),
-                (z - 0.02, z + 0.02),
+                around(z, 0.02),
                 wood,
                 turn=sign * fold,
             )
@@ -94,17 +88,11 @@ def shoji_screen(w: Workbench) -> None:
         sign = 1 if i % 2 == 0 else -1
         c = (i + 0.5 - 0.5 * panels) * run
         dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
-        w.box((-0.004, 0.004), (c - 0.5 * panel_m, c + 0.5 * panel_m), (0.05, high - 0.02), paper, turn=sign * fold)
+        w.box((-0.004, 0.004), around(c, 0.5 * panel_m), (0.05, high - 0.02), paper, turn=sign * fold)
         for t in (-0.5 * panel_m + 0.012, 0.0, 0.5 * panel_m - 0.012):
-            w.box(
-                (t * dx - 0.011, t * dx + 0.011),
-                (c + t * dy - 0.011, c + t * dy + 0.011),
-                (0.0 if t else 0.05, high),
-                wood,
-                turn=sign * fold,
-            )
+            w.box(around(t * dx, 0.011), around(c + t * dy, 0.011), (0.0 if t else 0.05, high), wood, turn=sign * fold)
         for z in (0.05, 0.36 * high, 0.68 * high, high - 0.03):
-            w.box((-0.010, 0.010), (c - 0.5 * panel_m, c + 0.5 * panel_m), (z, z + 0.03), wood, turn=sign * fold)
+            w.box((-0.010, 0.010), around(c, 0.5 * panel_m), (z, z + 0.03), wood, turn=sign * fold)
 
 
 STYLES = (

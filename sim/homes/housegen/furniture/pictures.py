@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.parts.flat_pictures import Page, photograph
 from sim.homes.housegen.furniture.parts.palette_mesh import PaletteMesh
 from sim.homes.housegen.furniture.shapes import named_mesh
@@ -21,7 +21,7 @@ def frame(w: Workbench, width: float, height: float, border: float, thick: float
     w.box((0.0, thick), (-y, y), (height - border, height), look)
     for side in BOTH_SIDES:
         c = side * (y - 0.5 * border)
-        w.box((0.0, thick), (c - 0.5 * border, c + 0.5 * border), (border, height - border), look)
+        w.box((0.0, thick), around(c, 0.5 * border), (border, height - border), look)
 
 
 def distinct_looks(w: Workbench, material: str, count: int) -> list[Look]:
@@ -39,13 +39,7 @@ def framed_abstract(w: Workbench) -> None:
     w.mount_height_m = 1.52 - 0.5 * height
     border = w.length(0.02, 0.045)
     frame(w, width, height, border, 0.03, w.look("wood") if w.chance(0.6) else w.look("dark"))
-    w.box(
-        (0.0, 0.012),
-        (-0.5 * width + border, 0.5 * width - border),
-        (border, height - border),
-        w.look("paper"),
-        solid=False,
-    )
+    w.box((0.0, 0.012), centred(width, border), (border, height - border), w.look("paper"), solid=False)
     inner_y, inner_z = 0.5 * width - border - 0.04, 0.5 * height - border - 0.04
     for i in range(w.whole(3, 5)):
         dy, dz = w.length(0.2, 0.6) * inner_y, w.length(0.2, 0.6) * inner_z
@@ -53,9 +47,9 @@ def framed_abstract(w: Workbench) -> None:
         z = 0.5 * height + w.length(-1.0, 1.0) * (inner_z - dz)
         x = 0.013 + 0.002 * i
         if w.chance(0.5):
-            w.box((0.010, x), (y - dy, y + dy), (z - dz, z + dz), w.new_look("paint"), solid=False)
+            w.box((0.010, x), around(y, dy), around(z, dz), w.new_look("paint"), solid=False)
         else:
-            w.rod((0.010, y, z), (x, y, z), min(dy, dz), w.new_look("paint"), solid=False)
+            w.rod_x((y, z), (0.010, x), min(dy, dz), w.new_look("paint"), solid=False)
 
 
 def canvas_landscape(w: Workbench) -> None:
@@ -63,15 +57,9 @@ def canvas_landscape(w: Workbench) -> None:
     width, height = w.width(0.60, 1.20), w.height(0.45, 0.80)
     w.mount_height_m = 1.52 - 0.5 * height
     sky, sun, *hills = distinct_looks(w, "paint", 5)
-    w.box((0.0, 0.032), (-0.5 * width, 0.5 * width), (0.0, height), sky)
+    w.box((0.0, 0.032), centred(width), (0.0, height), sky)
     x = 0.034
-    w.rod(
-        (0.03, 0.22 * width, 0.70 * height),
-        (x, 0.22 * width, 0.70 * height),
-        0.12 * height,
-        sun,
-        solid=False,
-    )
+    w.rod_x((0.22 * width, 0.70 * height), (0.03, x), 0.12 * height, sun, solid=False)
     for i, look in enumerate(hills):
         x += 0.002
         low, peak, at = 0.16 * height * (2 - i), (0.62 - 0.17 * i) * height, w.length(-0.3, 0.3)
@@ -93,13 +81,7 @@ def triptych(w: Workbench) -> None:
         level = height * (0.62 - 0.12 * i)
         w.box((0.025, 0.033), (y0, y0 + pitch), (0.0, level), bands[0], solid=False)
         w.box((0.025, 0.036), (y0, y0 + pitch), (0.0, 0.45 * level), bands[1], solid=False)
-    w.rod(
-        (0.025, 0.30 * width, 0.75 * height),
-        (0.033, 0.30 * width, 0.75 * height),
-        0.09 * height + 0.02,
-        bands[1],
-        solid=False,
-    )
+    w.rod_x((0.30 * width, 0.75 * height), (0.025, 0.033), 0.09 * height + 0.02, bands[1], solid=False)
 
 
 def portrait(w: Workbench) -> None:
@@ -137,8 +119,8 @@ def photo_group(w: Workbench) -> None:
                 (z0 + pad_z, z0 + cell_z - (0.0 if j == rows - 1 else 0.02)),
             )
             w.box((0.0, 0.022), y, z, frame)
-            w.box((0.018, 0.024), (y[0] + 0.018, y[1] - 0.018), (z[0] + 0.018, z[1] - 0.018), paper, solid=False)
-            inner = (y[0] + 0.055, y[1] - 0.055), (z[0] + 0.055, z[1] - 0.055)
+            w.box((0.018, 0.024), inset(y, 0.018), inset(z, 0.018), paper, solid=False)
+            inner = inset(y, 0.055), inset(z, 0.055)
             photograph(w, Page(0.024, *inner, mesh=photos))
     photos.put(w)
 
@@ -149,7 +131,7 @@ def still_life(w: Workbench) -> None:
     w.mount_height_m = 1.52 - 0.5 * height
     border = 0.04
     frame(w, width, height, border, 0.03, w.look("wood"))
-    y, z = (-0.5 * width + border, 0.5 * width - border), (border, height - border)
+    y, z = centred(width, border), (border, height - border)
     w.box((0.0, 0.012), y, z, w.look("linen"), solid=False)
     table = border + 0.28 * height
     w.box((0.0, 0.014), y, (border, table), w.new_look("book"), solid=False)
@@ -167,9 +149,9 @@ def still_life(w: Workbench) -> None:
         solid=False,
     )
     for i, c in enumerate((0.06, 0.18, 0.30)):
-        w.rod(
-            (0.0, c * width, table + 0.05 * height),
-            (0.016 + 0.002 * i, c * width, table + 0.05 * height),
+        w.rod_x(
+            (c * width, table + 0.05 * height),
+            (0.0, 0.016 + 0.002 * i),
             0.07 * height,
             w.new_look("paint"),
             solid=False,
@@ -182,16 +164,10 @@ def scroll(w: Workbench) -> None:
     w.mount_height_m = 1.45 - 0.5 * height
     wood, y = w.look("wood"), 0.5 * width
     for z in (0.02, height - 0.02):
-        w.rod((0.02, -y, z), (0.02, y, z), 0.018, wood)
+        w.rod_y((0.02, z), (-y, y), 0.018, wood)
     w.box((0.0, 0.02), (-y + 0.03, y - 0.03), (0.02, height - 0.02), w.look("paper"))
     w.box((0.018, 0.024), (-y + 0.07, y - 0.07), (0.18 * height, 0.86 * height), w.look("linen"), solid=False)
-    w.rod(
-        (0.018, 0.2 * width, 0.72 * height),
-        (0.028, 0.2 * width, 0.72 * height),
-        0.11 * width,
-        w.new_look("paint"),
-        solid=False,
-    )
+    w.rod_x((0.2 * width, 0.72 * height), (0.018, 0.028), 0.11 * width, w.new_look("paint"), solid=False)
     for i, (c, high) in enumerate(((-0.12, 0.34), (0.14, 0.24))):
         hill = named_mesh(
             "hill",
@@ -208,10 +184,10 @@ def tondo(w: Workbench) -> None:
     """Builds a round picture of nested circles in a thick ring."""
     r = 0.5 * w.width(0.50, 0.90)
     w.mount_height_m = 1.52 - r
-    w.rod((0.0, 0.0, r), (0.030, 0.0, r), r, w.look("wood"))
-    w.rod((0.0, 0.0, r), (0.033, 0.0, r), 0.88 * r, w.new_look("paint"), solid=False)
-    w.rod((0.0, 0.2 * r, 1.1 * r), (0.036, 0.2 * r, 1.1 * r), 0.55 * r, w.new_look("paint"), solid=False)
-    w.rod((0.0, -0.25 * r, 0.8 * r), (0.039, -0.25 * r, 0.8 * r), 0.32 * r, w.new_look("paint"), solid=False)
+    w.rod_x((0.0, r), (0.0, 0.030), r, w.look("wood"))
+    w.rod_x((0.0, r), (0.0, 0.033), 0.88 * r, w.new_look("paint"), solid=False)
+    w.rod_x((0.2 * r, 1.1 * r), (0.0, 0.036), 0.55 * r, w.new_look("paint"), solid=False)
+    w.rod_x((-0.25 * r, 0.8 * r), (0.0, 0.039), 0.32 * r, w.new_look("paint"), solid=False)
 
 
 STYLES = (

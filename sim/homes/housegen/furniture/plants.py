@@ -10,6 +10,7 @@ import math
 from dataclasses import replace
 
 from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.parts import around, polar
 from sim.homes.housegen.furniture.parts.leaves import (
     SWORD,
     Body,
@@ -36,7 +37,7 @@ def _pot(w: Workbench, r: float, high: float) -> None:
     rings = [(0.0, 0.72), (0.85, 0.95), (0.86, 1.0), (0.98, 1.0), (1.0, 0.96)]
     shape = loft([Ring(z * high, s * r, s * r) for z, s in rings], 14, hull=True)
     w.mesh(shape, _ORIGIN, w.look("pot"))
-    w.cylinder((0.0, 0.0), (high - 0.004, high + 0.004), 0.9 * r, w.look("soil"), solid=False)
+    w.cylinder((0.0, 0.0), around(high, 0.004), 0.9 * r, w.look("soil"), solid=False)
 
 
 def _tuft(
@@ -56,7 +57,7 @@ def _tuft(
     for i in range(count):
         a, up = _TURN * i + turn, math.sin(1.9 * i + turn)
         flat = math.sqrt(1.0 - 0.8 * up * up)
-        out = (flat * math.cos(a), flat * math.sin(a), 0.85 * up)
+        out = (*polar(flat, a), 0.85 * up)
         near, far = ([c + d * share * radius for c, d in zip(at, out, strict=True)] for share in reach)
         middle = [0.6 * n + 0.4 * f for n, f in zip(near, far, strict=True)]
         path = [tuple(near), tuple(middle), (far[0], far[1], far[2] - 0.3 * width)]
@@ -71,7 +72,7 @@ def broadleaf(w: Workbench) -> None:
     leaves = []
     for i in range(13):
         a, t = _TURN * i, i / 12
-        base = (0.02 * math.cos(a), 0.02 * math.sin(a), high - 0.01)
+        base = (*polar(0.02, a), high - 0.01)
         path = arch(base, a, (0.16 + 0.38 * t) * tall, (1.0 - 0.5 * t) * tall, (0.04 + 0.22 * t) * tall)
         leaves.append(blade(path, 0.10 + 0.06 * tall, (0.8, 1.0)))
     green = w.look("foliage")
@@ -107,7 +108,7 @@ def snake_plant(w: Workbench) -> None:
     for i in range(13):
         a, reach, grown = _TURN * i, 0.55 * half * (0.3 + 0.06 * i), tall * (1.0 - 0.045 * i)
         path = [
-            (share * reach * math.cos(a + turn), share * reach * math.sin(a + turn), high - 0.01 + z * grown)
+            (*polar(share * reach, a + turn), high - 0.01 + z * grown)
             for share, z, turn in ((1.0, 0.0, 0.0), (1.25, 0.45, 0.15), (1.3, 0.8, -0.1), (1.7, 1.0, 0.1))
         ]
         leaves.append(blade(path, 0.07, SWORD))
@@ -123,8 +124,8 @@ def palm(w: Workbench) -> None:
     bark, fronds = w.look("wood"), []
     for k in range(3):
         a = math.tau * k / 3 + 0.3
-        top = (0.05 * math.cos(a), 0.05 * math.sin(a), high + 0.25 * (tall - high))
-        w.rod((0.03 * math.cos(a), 0.03 * math.sin(a), high - 0.01), top, 0.016, bark)
+        top = (*polar(0.05, a), high + 0.25 * (tall - high))
+        w.rod((*polar(0.03, a), high - 0.01), top, 0.016, bark)
         for j in range(1 if k == 2 else 2):
             turn, free = a + (j - 0.5) * 1.15, tall - top[2]
             reach, rise = (0.24 + 0.08 * j) * tall, (1.0 - 0.28 * j) * free
@@ -140,7 +141,7 @@ def rubber_tree(w: Workbench) -> None:
     """Builds a plant with one stem and big oval leaves at all heights."""
     r, high, tall = w.length(0.14, 0.18), w.length(0.24, 0.32), w.length(0.90, 1.40)
     _pot(w, r, high)
-    w.rod((0.0, 0.0, high - 0.01), (0.0, 0.0, tall - 0.18), 0.014, w.look("wood"))
+    w.cylinder((0.0, 0.0), (high - 0.01, tall - 0.18), 0.014, w.look("wood"))
     leaves = []
     for i in range(15):
         t = i / 14
@@ -186,7 +187,7 @@ def flower_pot(w: Workbench) -> None:
     flowers = []
     for i in range(6):
         a, far = math.tau * i / 5, 0.06 if i < 5 else 0.0
-        tip = (far * math.cos(a), far * math.sin(a), high + 0.13 + 0.025 * (i % 2) + (0.02 if i == 5 else 0.0))
+        tip = (*polar(far, a), high + 0.13 + 0.025 * (i % 2) + (0.02 if i == 5 else 0.0))
         green.append(tube([(0.0, 0.0, high), tip], (0.003, 0.002), 3))
         flowers.append(blossom(tip, (1.4 * tip[0], 1.4 * tip[1], 0.06), 0.04))
     w.mesh(joined("leaves", green), _ORIGIN, w.look("foliage"), solid=False)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.parts import around, centred
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
 def rug(w: Workbench) -> None:
     """Builds a patterned rug."""
     width, depth = w.width(1.4, 2.4), w.depth(0.9, 1.7)
-    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.008), w.look("rug"), solid=False)
+    w.box(centred(depth), centred(width), (0.0, 0.008), w.look("rug"), solid=False)
 
 
 def round_rug(w: Workbench) -> None:
@@ -22,35 +23,27 @@ def round_rug(w: Workbench) -> None:
 def runner(w: Workbench) -> None:
     """Builds a long narrow striped rug for halls."""
     width, depth = w.width(1.8, 2.8), w.depth(0.65, 0.85)
-    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.007), w.look("fabric"), solid=False)
+    w.box(centred(depth), centred(width), (0.0, 0.007), w.look("fabric"), solid=False)
     band = w.look("bright")
     for side in (-1, 1):
         c = side * (0.5 * depth - 0.10)
-        w.box((c - 0.03, c + 0.03), (-0.5 * width + 0.08, 0.5 * width - 0.08), (0.0, 0.010), band, solid=False)
+        w.box(around(c, 0.03), centred(width, 0.08), (0.0, 0.010), band, solid=False)
 
 
 def shag(w: Workbench) -> None:
     """Builds a thick plain rug with a border."""
     width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
-    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.008), w.new_look("fabric"), solid=False)
-    w.box(
-        (-0.5 * depth + 0.09, 0.5 * depth - 0.09),
-        (-0.5 * width + 0.09, 0.5 * width - 0.09),
-        (0.0, 0.012),
-        w.new_look("fabric"),
-        solid=False,
-    )
+    w.box(centred(depth), centred(width), (0.0, 0.008), w.new_look("fabric"), solid=False)
+    w.box(centred(depth, 0.09), centred(width, 0.09), (0.0, 0.012), w.new_look("fabric"), solid=False)
 
 
 def oriental(w: Workbench) -> None:
     """Builds a patterned rug with fringes at both ends."""
     width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
-    w.box(
-        (-0.5 * depth, 0.5 * depth), (-0.5 * width + 0.06, 0.5 * width - 0.06), (0.0, 0.009), w.look("rug"), solid=False
-    )
+    w.box(centred(depth), centred(width, 0.06), (0.0, 0.009), w.look("rug"), solid=False)
     for side in (-1, 1):
         low, high = sorted((side * (0.5 * width - 0.065), side * 0.5 * width))
-        w.box((-0.5 * depth, 0.5 * depth), (low, high), (0.0, 0.004), w.look("linen"), solid=False)
+        w.box(centred(depth), (low, high), (0.0, 0.004), w.look("linen"), solid=False)
 
 
 STYLES = (

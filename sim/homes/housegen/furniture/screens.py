@@ -6,7 +6,7 @@ Usual retail dimensions by diagonal: 24 in is 0.53 m wide, 32 in 0.72 m, 43 in 0
 from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.parts.flat_pictures import show_computer, show_television
 from sim.homes.housegen.furniture.shapes import chamfered_box
 from sim.homes.housegen.furniture.workbench import Range, Workbench
@@ -17,16 +17,10 @@ SHARE_ON = 0.45
 
 def _panel(w: Workbench, x: float, width: float, z: Range, *, computer: bool = False) -> None:
     """Adds a flat screen in a dark case, which shows a picture if it is on."""
-    w.box((x - 0.022, x + 0.012), (-0.5 * width, 0.5 * width), z, w.look("dark"))
-    w.box(
-        (x + 0.012, x + 0.016),
-        (-0.5 * width + 0.012, 0.5 * width - 0.012),
-        (z[0] + 0.02, z[1] - 0.012),
-        w.look("screen"),
-        solid=False,
-    )
+    w.box((x - 0.022, x + 0.012), centred(width), z, w.look("dark"))
+    w.box((x + 0.012, x + 0.016), centred(width, 0.012), inset(z, 0.02, 0.012), w.look("screen"), solid=False)
     if w.chance(SHARE_ON):
-        y, inner = (-0.5 * width + 0.02, 0.5 * width - 0.02), (z[0] + 0.028, z[1] - 0.02)
+        y, inner = centred(width, 0.02), inset(z, 0.028, 0.02)
         (show_computer if computer else show_television)(w, x + 0.016, y, inner)
 
 
@@ -37,7 +31,7 @@ def tv_stand(w: Workbench) -> None:
     for side in BOTH_SIDES:
         y = side * 0.34 * width
         w.bar((-0.11, y, 0.008), (0.11, y, 0.008), 0.03, 0.016, w.look("dark"))
-        w.box((-0.015, 0.005), (y - 0.012, y + 0.012), (0.01, 0.08), w.look("dark"))
+        w.box((-0.015, 0.005), around(y, 0.012), (0.01, 0.08), w.look("dark"))
 
 
 def tv_wall(w: Workbench) -> None:
@@ -72,7 +66,7 @@ def crt(w: Workbench) -> None:
     """Builds an old television: a wooden box with a bulging screen, knobs and a V-shaped antenna."""
     width = w.length(0.55, 0.65)
     height, depth, wood = 0.72 * width, 0.62 * width, w.look("wood")
-    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.02, height), wood)
+    w.box(centred(depth), centred(width), (0.02, height), wood)
     w.legs((-0.4 * depth, 0.4 * depth), (-0.4 * width, 0.4 * width), (0.0, 0.022), 0.03, w.look("dark"))
     w.ellipsoid(
         (0.5 * depth - 0.005, 0.09 * width - 0.1, 0.5 * height),
@@ -81,12 +75,8 @@ def crt(w: Workbench) -> None:
         solid=False,
     )
     for z in (0.72, 0.5):
-        w.rod(
-            (0.5 * depth - 0.01, 0.40 * width, z * height),
-            (0.5 * depth + 0.02, 0.40 * width, z * height),
-            0.022,
-            w.look("brass"),
-            solid=False,
+        w.rod_x(
+            (0.40 * width, z * height), (0.5 * depth - 0.01, 0.5 * depth + 0.02), 0.022, w.look("brass"), solid=False
         )
     for side in BOTH_SIDES:
         w.rod((0.0, 0.0, height), (-0.05, side * 0.2, height + 0.30), 0.004, w.look("chrome"), solid=False)
@@ -97,19 +87,12 @@ def tv_arm(w: Workbench) -> None:
     width, iron = w.width(0.80, 1.15), w.look("iron")
     w.mount_height_m = 1.0
     h = 0.575 * width
-    w.box((0.0, 0.02), (-0.09, 0.09), (0.5 * h - 0.12, 0.5 * h + 0.12), iron)
+    w.box((0.0, 0.02), (-0.09, 0.09), around(0.5 * h, 0.12), iron)
     w.bar((0.01, 0.0, 0.5 * h), (0.21, 0.0, 0.5 * h), 0.05, 0.04, iron)
-    w.box((0.215, 0.25), (-0.5 * width, 0.5 * width), (0.0, h), w.look("dark"), tilt=0.06)
-    w.box(
-        (0.25, 0.255),
-        (-0.5 * width + 0.015, 0.5 * width - 0.015),
-        (0.02, h - 0.015),
-        w.look("screen"),
-        tilt=0.06,
-        solid=False,
-    )
+    w.box((0.215, 0.25), centred(width), (0.0, h), w.look("dark"), tilt=0.06)
+    w.box((0.25, 0.255), centred(width, 0.015), (0.02, h - 0.015), w.look("screen"), tilt=0.06, solid=False)
     if w.chance(SHARE_ON):
-        show_television(w, 0.255, (-0.5 * width + 0.02, 0.5 * width - 0.02), (0.025, h - 0.02), tilt=0.06)
+        show_television(w, 0.255, centred(width, 0.02), (0.025, h - 0.02), tilt=0.06)
 
 
 def tv_pole(w: Workbench) -> None:
@@ -120,7 +103,7 @@ def tv_pole(w: Workbench) -> None:
     _panel(w, 0.0, width, (z0, z0 + high))
     w.box((-0.24, 0.20), (-0.34, 0.34), (0.0, 0.02), w.look("dark"))
     for side in BOTH_SIDES:
-        w.rod((-0.06, side * 0.12, 0.015), (-0.06, side * 0.12, z0 + 0.6 * high), 0.022, metal)
+        w.cylinder((-0.06, side * 0.12), (0.015, z0 + 0.6 * high), 0.022, metal)
     w.box((-0.20, 0.12), (-0.26, 0.26), (0.34, 0.36), w.look("dark"))
     w.box((-0.12, 0.08), (-0.18, 0.18), (0.36, 0.41), metal, solid=False)
     w.box((-0.05, -0.02), (-0.15, 0.15), (z0 + 0.3 * high, z0 + 0.6 * high), metal)
@@ -152,21 +135,14 @@ def dual_monitor(w: Workbench) -> None:
     width, dark = w.length(0.48, 0.54), w.look("dark")
     high = 0.58 * width
     w.box((-0.12, 0.0), (-0.10, 0.10), (0.0, 0.02), dark)
-    w.rod((-0.07, 0.0, 0.01), (-0.07, 0.0, 0.34), 0.02, dark)
+    w.cylinder((-0.07, 0.0), (0.01, 0.34), 0.02, dark)
     for side in BOTH_SIDES:
         c, turn = side * 0.5 * width, -side * 0.18
         w.bar((-0.07, 0.0, 0.27), (-0.03, c, 0.27), 0.03, 0.03, dark)
-        w.box((-0.02, 0.01), (c - 0.49 * width, c + 0.49 * width), (0.12, 0.12 + high), dark, turn=turn)
-        w.box(
-            (0.006, 0.014),
-            (c - 0.47 * width, c + 0.47 * width),
-            (0.135, 0.107 + high),
-            w.look("screen"),
-            turn=turn,
-            solid=False,
-        )
+        w.box((-0.02, 0.01), around(c, 0.49 * width), (0.12, 0.12 + high), dark, turn=turn)
+        w.box((0.006, 0.014), around(c, 0.47 * width), (0.135, 0.107 + high), w.look("screen"), turn=turn, solid=False)
         if w.chance(SHARE_ON):
-            y = (c - 0.455 * width, c + 0.455 * width)
+            y = around(c, 0.455 * width)
             show_computer(w, 0.014, y, (0.145, 0.097 + high), turn=turn)
     w.box((0.16, 0.29), (-0.22, 0.22), (0.0, 0.018), dark, solid=False)
 

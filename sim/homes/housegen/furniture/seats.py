@@ -10,7 +10,7 @@ import math
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset, polar
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, loft, puffed
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -21,31 +21,20 @@ def bench_wood(w: Workbench) -> None:
     x, y = parts.footprint(depth, width)
     w.box(x, y, (seat - 0.04, seat), wood)
     w.mesh(chamfered_box((depth - 0.03, width - 0.06, 0.05), 0.015), (0.0, 0.0, seat + 0.02), w.look("fabric"))
-    w.legs((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.05, y[1] - 0.05), (0.0, seat - 0.04), 0.05, wood)
-    w.box((-0.02, 0.02), (y[0] + 0.08, y[1] - 0.08), (0.16, 0.20), wood)
+    w.legs(inset(x, 0.02), inset(y, 0.05), (0.0, seat - 0.04), 0.05, wood)
+    w.box((-0.02, 0.02), inset(y, 0.08), (0.16, 0.20), wood)
     for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.075)
-        w.box((x[0] + 0.04, x[1] - 0.04), (edge - 0.015, edge + 0.015), (0.16, 0.20), wood)
-    w.top(x, (y[0] + 0.1, y[1] - 0.1), seat + 0.045, "seat")
+        w.box(inset(x, 0.04), around(edge, 0.015), (0.16, 0.20), wood)
+    w.top(x, inset(y, 0.1), seat + 0.045, "seat")
 
 
 def ottoman(w: Workbench) -> None:
     """Builds an upholstered block with a lid seam on short legs."""
     width, depth, height, cloth = w.width(0.55, 1.20), w.depth(0.45, 0.60), w.length(0.40, 0.46), w.look("fabric")
-    w.box(
-        (-0.5 * depth + 0.01, 0.5 * depth - 0.01),
-        (-0.5 * width + 0.01, 0.5 * width - 0.01),
-        (0.08, height - 0.12),
-        cloth,
-    )
+    w.box(centred(depth, 0.01), centred(width, 0.01), (0.08, height - 0.12), cloth)
     w.mesh(chamfered_box((depth, width, 0.13), 0.03), (0.0, 0.0, height - 0.065), cloth)
-    w.legs(
-        (-0.5 * depth + 0.03, 0.5 * depth - 0.03),
-        (-0.5 * width + 0.03, 0.5 * width - 0.03),
-        (0.0, 0.085),
-        0.045,
-        w.look("wood"),
-    )
+    w.legs(centred(depth, 0.03), centred(width, 0.03), (0.0, 0.085), 0.045, w.look("wood"))
     w.top((-0.4 * depth, 0.4 * depth), (-0.4 * width, 0.4 * width), height, "seat")
 
 
@@ -57,7 +46,7 @@ def pouf(w: Workbench) -> None:
     w.mesh(puffed(r, height), (0.0, 0.0, 0.0), cloth)
     for i in range(6):
         a = math.pi * i / 6
-        seam = [(s * 0.5 * r * math.cos(a), s * 0.5 * r * math.sin(a), height + 0.001) for s in (-1, 1)]
+        seam = [(*polar(s * 0.5 * r, a), height + 0.001) for s in (-1, 1)]
         w.bar(seam[0], seam[1], 0.008, 0.004, parts.darker(cloth, 0.6), solid=False)
     w.cylinder((0.0, 0.0), (height, height + 0.008), 0.03, w.look("dark"), solid=False)
 
@@ -72,13 +61,13 @@ def storage_bench(w: Workbench) -> None:
     w.box((x[0], x[0] + 0.012), y, (0.05, seat - 0.06), look)
     for i in range(4):
         c = y[0] + 0.011 + i * (width - 0.022) / 3
-        w.box(x, (c - 0.011, c + 0.011), (0.0, seat - 0.06), look)
+        w.box(x, around(c, 0.011), (0.0, seat - 0.06), look)
     w.mesh(chamfered_box((depth - 0.01, width - 0.01, 0.06), 0.02), (0.0, 0.0, seat - 0.012), w.look("fabric"))
     for i in range(3):
         c = y[0] + (i + 0.5) * width / 3
         for dy in (-0.055, 0.055):
             w.ellipsoid((0.02, c + dy, 0.10), (0.13, 0.042, 0.048), w.new_look("book"), solid=False)
-    w.top(x, (y[0] + 0.1, y[1] - 0.1), seat + 0.015, "seat")
+    w.top(x, inset(y, 0.1), seat + 0.015, "seat")
 
 
 def beanbag(w: Workbench) -> None:
@@ -111,17 +100,12 @@ def tufted_bench(w: Workbench) -> None:
             (0.0, (i + 0.5) * width / count - 0.5 * width, seat - 0.06),
             cloth,
         )
-    w.box(
-        (-0.5 * depth + 0.04, 0.5 * depth - 0.04),
-        (-0.5 * width + 0.05, 0.5 * width - 0.05),
-        (seat - 0.15, seat - 0.11),
-        w.look("dark"),
-    )
+    w.box(centred(depth, 0.04), centred(width, 0.05), (seat - 0.15, seat - 0.11), w.look("dark"))
     for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.16)
         w.bar((-0.17, y, 0.0), (0.17, y, seat - 0.14), 0.025, 0.015, metal)
         w.bar((0.17, y, 0.0), (-0.17, y, seat - 0.14), 0.025, 0.015, metal)
-    w.rod((0.0, -0.5 * width + 0.16, 0.5 * (seat - 0.14)), (0.0, 0.5 * width - 0.16, 0.5 * (seat - 0.14)), 0.010, metal)
+    w.rod_y((0.0, 0.5 * (seat - 0.14)), centred(width, 0.16), 0.010, metal)
     w.top((-0.4 * depth, 0.4 * depth), (-0.4 * width, 0.4 * width), seat, "seat")
 
 
@@ -140,9 +124,9 @@ def settle(w: Workbench) -> None:
     w.box(x, y, (seat - 0.035, seat), wood)
     for side in BOTH_SIDES:
         c = side * (0.5 * width - 0.02)
-        w.box((x[0], x[1]), (c - 0.02, c + 0.02), (0.0, seat), wood)
-        w.box((x[1] - 0.05, x[1] - 0.01), (c - 0.02, c + 0.02), (seat, 0.64), wood)
-        w.box((x[0], x[1] + 0.01), (c - 0.03, c + 0.03), (0.64, 0.67), wood)
+        w.box((x[0], x[1]), around(c, 0.02), (0.0, seat), wood)
+        w.box((x[1] - 0.05, x[1] - 0.01), around(c, 0.02), (seat, 0.64), wood)
+        w.box((x[0], x[1] + 0.01), around(c, 0.03), (0.64, 0.67), wood)
     w.box((x[1] - 0.04, x[1] - 0.02), y, (0.10, seat - 0.03), wood)
     for i in range(3):
         c = (i - 1) * width / 3.2
@@ -152,16 +136,16 @@ def settle(w: Workbench) -> None:
             wood,
             solid=False,
         )
-    w.top((x[0] + 0.05, x[1]), (y[0] + 0.1, y[1] - 0.1), seat, "seat")
+    w.top((x[0] + 0.05, x[1]), inset(y, 0.1), seat, "seat")
 
 
 def slab_bench(w: Workbench) -> None:
     """Builds a bench of stone or plank on two blocks."""
     width, depth, seat = w.width(0.95, 1.40), w.depth(0.36, 0.42), w.length(0.42, 0.46)
-    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (seat - 0.07, seat), w.look("wood"))
+    w.box(centred(depth), centred(width), (seat - 0.07, seat), w.look("wood"))
     for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.22)
-        w.box((-0.5 * depth + 0.03, 0.5 * depth - 0.03), (y - 0.06, y + 0.06), (0.0, seat - 0.07), w.look("stone"))
+        w.box(centred(depth, 0.03), around(y, 0.06), (0.0, seat - 0.07), w.look("stone"))
     w.top((-0.4 * depth, 0.4 * depth), (-0.4 * width, 0.4 * width), seat, "seat")
 
 

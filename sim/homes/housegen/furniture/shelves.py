@@ -8,7 +8,7 @@ from __future__ import annotations
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
@@ -40,22 +40,22 @@ def bookcase(w: Workbench) -> None:
     x, y = parts.footprint(depth, width)
     for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.011)
-        w.box(x, (edge - 0.011, edge + 0.011), (0.0, height), look)
-    w.box((x[0], x[0] + 0.008), (y[0] + 0.022, y[1] - 0.022), (0.04, height), look)
+        w.box(x, around(edge, 0.011), (0.0, height), look)
+    w.box((x[0], x[0] + 0.008), inset(y, 0.022), (0.04, height), look)
     count = 5
     step = (height - 0.10) / count
     levels = [0.06 + i * step for i in range(count)]
-    _boards(w, (x[0] + 0.008, x[1]), (y[0] + 0.022, y[1] - 0.022), [*levels, height - 0.022], 0.022, look)
-    w.box((x[0], x[1] - 0.02), (y[0] + 0.022, y[1] - 0.022), (0.0, 0.06), look)
+    _boards(w, (x[0] + 0.008, x[1]), inset(y, 0.022), [*levels, height - 0.022], 0.022, look)
+    w.box((x[0], x[1] - 0.02), inset(y, 0.022), (0.0, 0.06), look)
     for z in levels:
-        _books(w, (x[0], x[1]), (y[0] + 0.03, y[1] - 0.03), z + 0.022, step - 0.022)
+        _books(w, (x[0], x[1]), inset(y, 0.03), z + 0.022, step - 0.022)
 
 
 def ladder_shelf(w: Workbench) -> None:
     """Builds a leaning ladder with four boards that get deeper towards the floor."""
     width, height, depth = w.width(0.55, 0.75), w.height(1.70, 1.90), w.depth(0.40, 0.48)
     wood = w.look("wood")
-    x0, x1, y = -0.5 * depth, 0.5 * depth, (-0.5 * width, 0.5 * width)
+    x0, x1, y = -0.5 * depth, 0.5 * depth, centred(width)
     for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.015)
         w.bar((x1 - 0.02, edge, 0.0), (x0 + 0.02, edge, height), 0.03, 0.03, wood)
@@ -65,14 +65,14 @@ def ladder_shelf(w: Workbench) -> None:
         w.box((x0, front), y, (z, z + 0.022), wood)
         w.box((x0, x0 + 0.012), y, (z + 0.022, z + 0.06), wood, solid=False)
         if i < 3:
-            _books(w, (x0, max(front, x0 + 0.2)), (y[0] + 0.04, y[1] - 0.04), z + 0.022, 0.4)
+            _books(w, (x0, max(front, x0 + 0.2)), inset(y, 0.04), z + 0.022, 0.4)
     w.bar((x0 + 0.02, 0.0, height - 0.02), (x0 + 0.02, 0.0, height), width, 0.03, wood)
 
 
 def wall_boards(w: Workbench) -> None:
     """Builds two or three boards on the wall with books and a vase."""
     width, depth, count = w.width(0.70, 1.20), w.depth(0.20, 0.26), w.whole(2, 3)
-    look, metal, y = parts.wood_look(w), w.look("iron"), (-0.5 * width, 0.5 * width)
+    look, metal, y = parts.wood_look(w), w.look("iron"), centred(width)
     w.mount_height_m = 1.15
     for i in range(count):
         z = 0.14 + 0.36 * i
@@ -80,7 +80,7 @@ def wall_boards(w: Workbench) -> None:
         for side in BOTH_SIDES:
             edge = side * 0.36 * width
             w.bar((0.006, edge, z - 0.12), (depth - 0.05, edge, z), 0.012, 0.012, metal, solid=False)
-        _books(w, (0.0, depth), (y[0] + 0.06, y[1] - 0.20), z + 0.025, 0.30)
+        _books(w, (0.0, depth), inset(y, 0.06, 0.20), z + 0.025, 0.30)
         w.ellipsoid((0.5 * depth, y[1] - 0.10, z + 0.095), (0.06, 0.06, 0.07), w.new_look("ceramic"), solid=False)
 
 
@@ -95,7 +95,7 @@ def pipe_shelf(w: Workbench) -> None:
     w.bar((x[0] + 0.01, y[0] + 0.02, 0.14), (x[0] + 0.01, y[1] - 0.02, height - 0.02), 0.008, 0.008, iron, solid=False)
     w.bar((x[0] + 0.01, y[1] - 0.02, 0.14), (x[0] + 0.01, y[0] + 0.02, height - 0.02), 0.008, 0.008, iron, solid=False)
     for z in levels[:3]:
-        _books(w, x, (y[0] + 0.05, y[1] - 0.05), z + 0.035, 0.4)
+        _books(w, x, inset(y, 0.05), z + 0.035, 0.4)
 
 
 def etagere(w: Workbench) -> None:
@@ -103,13 +103,13 @@ def etagere(w: Workbench) -> None:
     width, depth, height = w.width(0.60, 0.85), w.depth(0.32, 0.38), w.height(1.60, 1.85)
     brass, glass = w.look("brass"), parts.tinted_glass(w.look("glass"))
     x, y = parts.footprint(depth, width)
-    w.legs((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.01), (0.0, height), 0.02, brass, round_=True)
+    w.legs(inset(x, 0.01), inset(y, 0.01), (0.0, height), 0.02, brass, round_=True)
     for i in range(4):
         z = 0.10 + i * (height - 0.13) / 3
         w.box(x, y, (z, z + 0.012), glass)
         w.box((x[1] - 0.008, x[1]), y, (z - 0.008, z + 0.014), brass, solid=False)
         if i in (0, 2):
-            _books(w, x, (y[0] + 0.06, y[1] - 0.06), z + 0.012, 0.4)
+            _books(w, x, inset(y, 0.06), z + 0.012, 0.4)
         elif i == 1:
             w.ellipsoid((0.0, 0.1, z + 0.112), (0.08, 0.08, 0.10), w.look("pot"), solid=False)
             w.cylinder((0.0, -0.14), (z + 0.012, z + 0.17), 0.045, w.look("ceramic"), solid=False)
@@ -146,10 +146,10 @@ def cubes(w: Workbench) -> None:
     x, y = parts.footprint(depth, width)
     for i in range(columns + 1):
         c = y[0] + 0.015 + i * cell
-        w.box(x, (c - 0.015, c + 0.015), (0.0, height), look)
+        w.box(x, around(c, 0.015), (0.0, height), look)
     for j in range(rows + 1):
         c = 0.02 + j * 0.36
-        w.box(x, y, (c - 0.015, c + 0.015), look)
+        w.box(x, y, around(c, 0.015), look)
     w.box((x[0], x[0] + 0.006), y, (0.0, height), look)
     for i in range(columns):
         for j in range(rows):
@@ -163,7 +163,7 @@ def cubes(w: Workbench) -> None:
                 )
             elif w.chance(0.6):
                 _books(w, x, (y0, y0 + cell - 0.04), z0, 0.33)
-    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), height)
+    w.top(inset(x, 0.03), inset(y, 0.05), height)
 
 
 STYLES = (

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.shapes import Ring, loft
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
@@ -86,10 +86,10 @@ def wall_basin(w: Workbench) -> None:
     width, depth = w.width(0.45, 0.65), w.depth(0.36, 0.46)
     w.mount_height_m = 0.56
     white, chrome, z = w.look("ceramic"), w.look("chrome"), 0.28
-    _ceramic_basin(w, (0.0, depth), (-0.5 * width, 0.5 * width), z, 0.14, white, taper=0.75)
-    w.rod((0.24, 0.0, 0.05), (0.24, 0.0, z - 0.12), 0.018, chrome, solid=False)
+    _ceramic_basin(w, (0.0, depth), centred(width), z, 0.14, white, taper=0.75)
+    w.cylinder((0.24, 0.0), (0.05, z - 0.12), 0.018, chrome, solid=False)
     w.cylinder((0.24, 0.0), (0.0, 0.08), 0.035, chrome, solid=False)
-    w.rod((0.0, 0.0, 0.06), (0.24, 0.0, 0.06), 0.015, chrome, solid=False)
+    w.rod_x((0.0, 0.06), (0.0, 0.24), 0.015, chrome, solid=False)
     parts.mixer_tap(w, (0.05, 0.0, z), 0.12, 0.13, chrome)
 
 
@@ -129,14 +129,9 @@ def console_sink(w: Workbench) -> None:
     rx, ry = 0.5 * depth, 0.5 * width
     bowl = [Ring(rim - 0.19, rx - 0.16, ry - 0.22, 0.04), Ring(rim - 0.06, rx - 0.07, ry - 0.07, 0.03)]
     w.mesh(loft(bowl, 14, hull=True), (0.0, 0.0, 0.0), white)
-    w.legs((x[0] + 0.04, x[1] - 0.06), (y[0] + 0.05, y[1] - 0.05), (0.0, rim - 0.06), 0.025, metal, round_=True)
+    w.legs(inset(x, 0.04, 0.06), inset(y, 0.05), (0.0, rim - 0.06), 0.025, metal, round_=True)
     for side in BOTH_SIDES:
-        w.rod(
-            (x[0] + 0.05, side * (0.5 * width - 0.06), 0.28),
-            (x[1] - 0.07, side * (0.5 * width - 0.06), 0.28),
-            0.008,
-            metal,
-        )
+        w.rod_x((side * (0.5 * width - 0.06), 0.28), inset(x, 0.05, 0.07), 0.008, metal)
     parts.mixer_tap(w, (x[0] + 0.05, 0.0, rim), 0.14, 0.15, metal)
 
 
@@ -152,20 +147,15 @@ def utility(w: Workbench) -> None:
     """Builds a deep laundry tub of plastic on a steel stand."""
     half, rim = 0.5 * w.width(0.50, 0.60), w.length(0.84, 0.88)
     depth, white, metal = w.depth(0.46, 0.52), w.look("ceramic"), w.look("metal")
-    x = (-0.5 * depth, 0.5 * depth)
+    x = centred(depth)
     rx, lip = 0.5 * depth, 0.05
     tub = [Ring(rim - 0.34, 0.84 * rx, 0.84 * half, power=6), Ring(rim - lip, 0.92 * rx, 0.93 * half, power=6)]
     tub += [Ring(z, rx, half, power=6) for z in (rim - lip, rim)]
     tub += [Ring(rim, rx - 0.035, half - 0.035, power=6), Ring(rim - 0.3, 0.8 * rx, 0.8 * half, power=6)]
     w.mesh(loft(tub, 16), (0.0, 0.0, 0.0), white)
-    w.legs((x[0] + 0.05, x[1] - 0.05), (-half + 0.05, half - 0.05), (0.0, rim - 0.33), 0.03, metal)
+    w.legs(inset(x, 0.05), (-half + 0.05, half - 0.05), (0.0, rim - 0.33), 0.03, metal)
     for side in BOTH_SIDES:
-        w.box(
-            (x[0] + 0.03, x[1] - 0.03),
-            (side * (half - 0.035) - 0.01, side * (half - 0.035) + 0.01),
-            (0.16, 0.19),
-            metal,
-        )
+        w.box(inset(x, 0.03), around(side * (half - 0.035), 0.01), (0.16, 0.19), metal)
     w.cylinder((0.0, 0.0), (rim - 0.42, rim - 0.33), 0.025, w.look("dark"), solid=False)
     w.box((x[0] - 0.02, x[0] + 0.01), (-half, half), (rim - 0.02, rim + 0.12), white)
     parts.mixer_tap(w, (x[0] + 0.02, 0.0, rim + 0.02), 0.20, 0.12, w.look("chrome"))
@@ -176,16 +166,14 @@ def trough(w: Workbench) -> None:
     width, depth = w.width(0.85, 1.10), w.depth(0.42, 0.48)
     w.mount_height_m = 0.62
     stone, brass = w.look("stone"), w.look("brass")
-    parts.basin(w, (0.0, depth), (-0.5 * width, 0.5 * width), 0.22, 0.14, 0.04, stone)
+    parts.basin(w, (0.0, depth), centred(width), 0.22, 0.14, 0.04, stone)
     for side in BOTH_SIDES:
         y = side * 0.36 * width
-        w.box((0.0, 0.03), (y - 0.02, y + 0.02), (0.0, 0.08), w.look("iron"))
+        w.box((0.0, 0.03), around(y, 0.02), (0.0, 0.08), w.look("iron"))
         w.bar((0.015, y, 0.02), (depth - 0.10, y, 0.08), 0.03, 0.02, w.look("iron"))
-        w.rod((0.0, side * 0.22 * width, 0.34), (0.17, side * 0.22 * width, 0.34), 0.012, brass, solid=False)
+        w.rod_x((side * 0.22 * width, 0.34), (0.0, 0.17), 0.012, brass, solid=False)
         w.rod((0.16, side * 0.22 * width, 0.35), (0.16, side * 0.22 * width, 0.30), 0.012, brass, solid=False)
-        w.rod(
-            (0.0, side * 0.22 * width + 0.07, 0.34), (0.04, side * 0.22 * width + 0.07, 0.34), 0.022, brass, solid=False
-        )
+        w.rod_x((side * 0.22 * width + 0.07, 0.34), (0.0, 0.04), 0.022, brass, solid=False)
 
 
 def double_steel(w: Workbench) -> None:
@@ -196,7 +184,7 @@ def double_steel(w: Workbench) -> None:
     w.box((-0.215, -0.195), (-0.255, 0.255), (0.178, 0.185), steel, solid=False)
     w.box((0.195, 0.215), (-0.255, 0.255), (0.178, 0.185), steel, solid=False)
     for side in BOTH_SIDES:
-        w.box((-0.215, 0.215), (side * 0.246 - 0.009, side * 0.246 + 0.009), (0.178, 0.185), steel, solid=False)
+        w.box((-0.215, 0.215), around(side * 0.246, 0.009), (0.178, 0.185), steel, solid=False)
     parts.mixer_tap(w, (-0.205, 0.05, 0.18), 0.20, 0.24, w.look("chrome"))
 
 

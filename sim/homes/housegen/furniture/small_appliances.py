@@ -6,7 +6,7 @@ Usual retail dimensions (hobs 0.58 x 0.51 m, microwaves 0.46-0.52 m wide, hoods 
 from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
 from sim.homes.housegen.furniture.shapes import chamfered_box, named_mesh
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -28,10 +28,10 @@ def gas_hob(w: Workbench) -> None:
             w.cylinder((x, side * 0.14), (0.010, 0.022), 0.055, w.look("chrome"), solid=False)
             w.cylinder((x, side * 0.14), (0.022, 0.034), 0.04, iron, solid=False)
     for side in BOTH_SIDES:
-        w.box((-0.23, 0.17), (side * 0.14 - 0.006, side * 0.14 + 0.006), (0.010, 0.045), iron, solid=False)
+        w.box((-0.23, 0.17), around(side * 0.14, 0.006), (0.010, 0.045), iron, solid=False)
         w.cylinder((0.21, side * 0.10), (0.010, 0.035), 0.018, w.look("chrome"), solid=False)
     for x in (-0.14, 0.08):
-        w.box((x - 0.006, x + 0.006), (-0.25, 0.25), (0.010, 0.045), iron, solid=False)
+        w.box(around(x, 0.006), (-0.25, 0.25), (0.010, 0.045), iron, solid=False)
 
 
 def microwave(w: Workbench) -> None:
@@ -40,13 +40,7 @@ def microwave(w: Workbench) -> None:
     width, depth, height = w.length(0.46, 0.52), w.length(0.34, 0.40), w.length(0.26, 0.30)
     x = 0.5 * depth
     w.mesh(chamfered_box((depth, width, height), 0.008), (0.0, 0.0, 0.5 * height), look)
-    w.box(
-        (x - 0.002, x + 0.006),
-        (-0.5 * width + 0.03, 0.5 * width - 0.14),
-        (0.04, height - 0.04),
-        w.look("screen"),
-        solid=False,
-    )
+    w.box((x - 0.002, x + 0.006), centred(width, 0.03, 0.14), (0.04, height - 0.04), w.look("screen"), solid=False)
     w.box(
         (x - 0.002, x + 0.004),
         (0.5 * width - 0.11, 0.5 * width - 0.02),
@@ -65,11 +59,11 @@ def toaster_oven(w: Workbench) -> None:
     w.mesh(chamfered_box((0.32, 0.42, 0.23), 0.02), (0.0, 0.0, 0.125), look)
     w.legs((-0.13, 0.13), (-0.18, 0.18), (0.0, 0.02), 0.03, w.look("rubber"))
     w.box((0.155, 0.166), (-0.19, 0.10), (0.05, 0.21), w.look("screen"), solid=False)
-    w.rod((0.18, -0.17, 0.20), (0.18, 0.08, 0.20), 0.008, metal, solid=False)
+    w.rod_y((0.18, 0.20), (-0.17, 0.08), 0.008, metal, solid=False)
     w.box((0.16, 0.182), (-0.16, -0.15), (0.195, 0.205), metal, solid=False)
     w.box((0.16, 0.182), (0.06, 0.07), (0.195, 0.205), metal, solid=False)
     for z in (0.07, 0.125, 0.18):
-        w.rod((0.15, 0.155, z), (0.178, 0.155, z), 0.018, metal, solid=False)
+        w.rod_x((0.155, z), (0.15, 0.178), 0.018, metal, solid=False)
 
 
 def range_hood(w: Workbench) -> None:
@@ -87,7 +81,7 @@ def range_hood(w: Workbench) -> None:
     w.mesh(named_mesh("hood", hood + [(x, -y, z) for x, y, z in hood]), (0.0, 0.0, 0.0), metal)
     w.box((0.0, 0.26), (-0.14, 0.14), (0.29, 0.85), metal)
     for i in range(3):
-        w.rod((0.495, 0.10 + 0.05 * i, 0.03), (0.505, 0.10 + 0.05 * i, 0.03), 0.010, w.look("dark"), solid=False)
+        w.rod_x((0.10 + 0.05 * i, 0.03), (0.495, 0.505), 0.010, w.look("dark"), solid=False)
 
 
 def flat_hood(w: Workbench) -> None:
@@ -116,7 +110,7 @@ def toaster(w: Workbench) -> None:
     w.mesh(chamfered_box((0.17, 0.28, 0.19), 0.04), (0.0, 0.0, 0.105), look)
     w.legs((-0.06, 0.06), (-0.11, 0.11), (0.0, 0.015), 0.025, w.look("rubber"))
     for x in (-0.03, 0.03):
-        w.box((x - 0.012, x + 0.012), (-0.10, 0.10), (0.19, 0.204), w.look("char"), solid=False)
+        w.box(around(x, 0.012), (-0.10, 0.10), (0.19, 0.204), w.look("char"), solid=False)
     w.box((-0.02, 0.02), (0.135, 0.165), (0.12, 0.14), w.look("dark"), solid=False)
 
 

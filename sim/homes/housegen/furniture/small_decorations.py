@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.parts import around, polar
 from sim.homes.housegen.furniture.parts.palette_mesh import (
     ACCENTS,
     BROWN,
@@ -45,7 +46,7 @@ def game_console(w: Workbench) -> None:
     m.box((-0.12, 0.10), (-0.16, 0.10), (0.0, 0.055), w.choice((DARK, WHITE)))
     m.box((0.10, 0.104), (-0.14, 0.02), (0.02, 0.032), w.choice(ACCENTS))
     for x, turn in ((-0.05, 0.4), (0.07, -0.3)):
-        m.box((x - 0.03, x + 0.03), (0.15, 0.28), (0.0, 0.035), w.choice((DARK, WHITE, *ACCENTS)), turn=turn)
+        m.box(around(x, 0.03), (0.15, 0.28), (0.0, 0.035), w.choice((DARK, WHITE, *ACCENTS)), turn=turn)
     m.put(w)
 
 
@@ -66,10 +67,10 @@ def twig_jar(w: Workbench) -> None:
     )
     for n in range(4):
         lean, turn = 0.16 + 0.05 * n, math.tau * n / 4
-        x, y = 0.06 * math.cos(turn), 0.06 * math.sin(turn)
+        x, y = polar(0.06, turn)
         roll, tilt = -lean * math.sin(turn), lean * math.cos(turn)
-        m.box((x - 0.004, x + 0.004), (y - 0.004, y + 0.004), (0.16, 0.44), BROWN, roll=roll, tilt=tilt)
-        m.box((1.6 * x - 0.03, 1.6 * x + 0.03), (1.6 * y - 0.014, 1.6 * y + 0.014), (0.38, 0.40), GREEN, turn=turn)
+        m.box(around(x, 0.004), around(y, 0.004), (0.16, 0.44), BROWN, roll=roll, tilt=tilt)
+        m.box(around(1.6 * x, 0.03), around(1.6 * y, 0.014), (0.38, 0.40), GREEN, turn=turn)
     m.put(w)
 
 
@@ -102,7 +103,7 @@ def alarm_clock(w: Workbench) -> None:
     m.box((0.027, 0.03), (-0.003, 0.003), (0.06, 0.10), DARK)
     for y in (-0.035, 0.035):
         m.round((0.0, y), [(0.118, 0.024), (0.135, 0.014)], METAL, sides=6)
-        m.box((-0.01, 0.01), (y - 0.006, y + 0.006), (0.0, 0.02), DARK)
+        m.box((-0.01, 0.01), around(y, 0.006), (0.0, 0.02), DARK)
     m.put(w)
 
 
@@ -118,9 +119,9 @@ def frames(w: Workbench) -> None:
     """Builds two standing picture frames."""
     m = PaletteMesh()
     for y, wide, high in ((-0.10, 0.075, 0.22), (0.09, 0.06, 0.16)):
-        m.box((-0.01, 0.006), (y - wide, y + wide), (0.004, high), w.choice((WOOD, DARK, METAL)), tilt=-0.2)
+        m.box((-0.01, 0.006), around(y, wide), (0.004, high), w.choice((WOOD, DARK, METAL)), tilt=-0.2)
         m.box((0.0, 0.009), (y - wide + 0.015, y + wide - 0.015), (0.02, high - 0.015), w.choice(ACCENTS), tilt=-0.2)
-        m.box((-0.075, -0.02), (y - 0.02, y + 0.02), (0.0, 0.012), DARK)
+        m.box((-0.075, -0.02), around(y, 0.02), (0.0, 0.012), DARK)
     m.put(w)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.parts import around, polar
 from sim.homes.housegen.furniture.parts.palette_mesh import (
     ACCENTS,
     BROWN,
@@ -24,9 +25,9 @@ from sim.homes.housegen.furniture.workbench import Workbench
 
 
 def _lace_shoe(m: PaletteMesh, y: float, shift: float, turn: float, column: int) -> None:
-    m.box((shift - 0.14, shift + 0.14), (y - 0.045, y + 0.045), (0.0, 0.025), WHITE, turn=turn)
-    m.box((shift - 0.135, shift + 0.02), (y - 0.04, y + 0.04), (0.024, 0.095), column, turn=turn)
-    m.box((shift - 0.02, shift + 0.13), (y - 0.042, y + 0.042), (0.024, 0.062), column, turn=turn)
+    m.box(around(shift, 0.14), around(y, 0.045), (0.0, 0.025), WHITE, turn=turn)
+    m.box((shift - 0.135, shift + 0.02), around(y, 0.04), (0.024, 0.095), column, turn=turn)
+    m.box((shift - 0.02, shift + 0.13), around(y, 0.042), (0.024, 0.062), column, turn=turn)
 
 
 def sneakers(w: Workbench) -> None:
@@ -41,9 +42,9 @@ def pumps(w: Workbench) -> None:
     """Builds a pair of low shoes."""
     m, column = PaletteMesh(), w.choice((*ACCENTS, HIDE, DARK))
     for y in (-0.055, 0.055):
-        m.box((-0.125, 0.125), (y - 0.038, y + 0.038), (0.0, 0.03), column, turn=0.5 * y)
-        m.box((-0.125, -0.03), (y - 0.036, y + 0.036), (0.028, 0.075), column, turn=0.5 * y)
-        m.box((-0.02, 0.07), (y - 0.026, y + 0.026), (0.028, 0.034), CREAM, turn=0.5 * y)
+        m.box((-0.125, 0.125), around(y, 0.038), (0.0, 0.03), column, turn=0.5 * y)
+        m.box((-0.125, -0.03), around(y, 0.036), (0.028, 0.075), column, turn=0.5 * y)
+        m.box((-0.02, 0.07), around(y, 0.026), (0.028, 0.034), CREAM, turn=0.5 * y)
     m.put(w, solid=True)
 
 
@@ -52,9 +53,9 @@ def boots(w: Workbench) -> None:
     m, column = PaletteMesh(), w.choice((HIDE, DARK, ACCENTS[0], ACCENTS[5]))
     high = w.length(0.20, 0.34)
     for y, x in ((-0.065, 0.0), (0.065, w.length(-0.05, 0.05))):
-        m.box((x - 0.13, x + 0.15), (y - 0.048, y + 0.048), (0.0, 0.025), DARK)
-        m.box((x - 0.125, x + 0.0), (y - 0.045, y + 0.045), (0.024, high), column)
-        m.box((x - 0.01, x + 0.14), (y - 0.043, y + 0.043), (0.024, 0.085), column)
+        m.box((x - 0.13, x + 0.15), around(y, 0.048), (0.0, 0.025), DARK)
+        m.box((x - 0.125, x + 0.0), around(y, 0.045), (0.024, high), column)
+        m.box((x - 0.01, x + 0.14), around(y, 0.043), (0.024, 0.085), column)
     m.put(w, solid=True)
 
 
@@ -63,7 +64,7 @@ def slippers(w: Workbench) -> None:
     m, column = PaletteMesh(), w.choice(ACCENTS)
     for y, turn in ((-0.06, 0.0), (0.07, 0.25)):
         m.round((0.0, y), [(0.0, 0.12), (0.02, 0.125)], CREAM, sides=8, wide=0.42)
-        m.box((0.005, 0.10), (y - 0.045, y + 0.045), (0.018, 0.065), column, turn=turn)
+        m.box((0.005, 0.10), around(y, 0.045), (0.018, 0.065), column, turn=turn)
     m.put(w, solid=True)
 
 
@@ -74,8 +75,8 @@ def tote_bag(w: Workbench) -> None:
     m.box((-0.071, 0.071), (-0.10, 0.10), (0.10, 0.22), CREAM)
     for x in (-0.06, 0.06):
         for y in (-0.08, 0.08):
-            m.box((x - 0.006, x + 0.006), (y - 0.014, y + 0.014), (0.31, 0.44), HIDE)
-        m.box((x - 0.006, x + 0.006), (-0.09, 0.09), (0.43, 0.455), HIDE)
+            m.box(around(x, 0.006), around(y, 0.014), (0.31, 0.44), HIDE)
+        m.box(around(x, 0.006), (-0.09, 0.09), (0.43, 0.455), HIDE)
     m.put(w, solid=True)
 
 
@@ -98,7 +99,7 @@ def duffel(w: Workbench) -> None:
         m.roll(0.0, 0.12, [(y, 0.124), (y + 0.03, 0.124)], HIDE)
     m.box((-0.012, 0.012), (-0.13, 0.13), (0.25, 0.265), HIDE)
     for y in (-0.12, 0.12):
-        m.box((-0.012, 0.012), (y - 0.01, y + 0.01), (0.22, 0.265), HIDE)
+        m.box((-0.012, 0.012), around(y, 0.01), (0.22, 0.265), HIDE)
     m.put(w, solid=True)
 
 
@@ -108,8 +109,8 @@ def satchel(w: Workbench) -> None:
     m.box((-0.06, 0.06), (-0.19, 0.19), (0.0, 0.28), column)
     m.box((0.055, 0.075), (-0.195, 0.195), (0.10, 0.285), column)
     for y in (-0.10, 0.10):
-        m.box((0.07, 0.08), (y - 0.014, y + 0.014), (0.05, 0.20), DARK)
-        m.box((0.078, 0.085), (y - 0.018, y + 0.018), (0.08, 0.11), METAL)
+        m.box((0.07, 0.08), around(y, 0.014), (0.05, 0.20), DARK)
+        m.box((0.078, 0.085), around(y, 0.018), (0.08, 0.11), METAL)
     m.box((-0.01, 0.01), (-0.06, 0.06), (0.275, 0.32), DARK)
     m.put(w, solid=True)
 
@@ -118,7 +119,7 @@ def toy_blocks(w: Workbench) -> None:
     """Builds toy blocks, some on top of each other."""
     m = PaletteMesh()
     for x, y, z in ((0.0, 0.0, 0.0), (0.07, 0.09, 0.0), (-0.09, 0.10, 0.0), (0.02, 0.03, 0.06), (0.10, -0.10, 0.0)):
-        m.box((x - 0.03, x + 0.03), (y - 0.03, y + 0.03), (z, z + 0.06), w.choice(ACCENTS), turn=3.0 * x + y)
+        m.box(around(x, 0.03), around(y, 0.03), (z, z + 0.06), w.choice(ACCENTS), turn=3.0 * x + y)
     m.put(w, solid=True)
 
 
@@ -138,9 +139,9 @@ def teddy(w: Workbench) -> None:
     m.ball((0.0, 0.0, 0.10), 0.105, fur)
     m.ball((0.02, 0.0, 0.25), 0.075, fur)
     for y in (-1, 1):
-        m.box((-0.01, 0.01), (0.055 * y - 0.022, 0.055 * y + 0.022), (0.29, 0.34), fur)
-        m.box((0.05, 0.17), (0.06 * y - 0.03, 0.06 * y + 0.03), (0.0, 0.06), fur, turn=0.3 * y)
-        m.box((0.0, 0.05), (0.09 * y - 0.025, 0.09 * y + 0.025), (0.08, 0.19), fur, roll=0.5 * y)
+        m.box((-0.01, 0.01), around(0.055 * y, 0.022), (0.29, 0.34), fur)
+        m.box((0.05, 0.17), around(0.06 * y, 0.03), (0.0, 0.06), fur, turn=0.3 * y)
+        m.box((0.0, 0.05), around(0.09 * y, 0.025), (0.08, 0.19), fur, roll=0.5 * y)
     m.box((0.07, 0.105), (-0.025, 0.025), (0.215, 0.25), CREAM)
     m.put(w, solid=True)
 
@@ -150,9 +151,9 @@ def toy_train(w: Workbench) -> None:
     m = PaletteMesh()
     for n in range(3):
         y = 0.19 * n
-        m.box((-0.04, 0.04), (y - 0.08, y + 0.08), (0.025, 0.05), DARK)
+        m.box((-0.04, 0.04), around(y, 0.08), (0.025, 0.05), DARK)
         m.box((-0.035, 0.035), (y - 0.075, y + (0.075 if n else 0.0)), (0.05, 0.10 if n else 0.16), w.choice(ACCENTS))
-        m.box((-0.048, 0.048), (y - 0.06, y + 0.06), (0.0, 0.03), METAL)
+        m.box((-0.048, 0.048), around(y, 0.06), (0.0, 0.03), METAL)
     m.box((-0.025, 0.025), (0.0, 0.075), (0.05, 0.10), w.choice(ACCENTS))
     m.box((-0.012, 0.012), (0.075, 0.12), (0.03, 0.04), DARK)
     m.put(w, solid=True)
@@ -163,7 +164,7 @@ def power_strip(w: Workbench) -> None:
     m = PaletteMesh()
     m.box((-0.03, 0.03), (-0.17, 0.17), (0.0, 0.024), WHITE)
     for y in (-0.10, 0.02):
-        m.box((-0.02, 0.02), (y - 0.02, y + 0.02), (0.02, 0.029), DARK)
+        m.box((-0.02, 0.02), around(y, 0.02), (0.02, 0.029), DARK)
     for a, b, turn in ((0.0, 0.30, 0.0), (0.27, 0.55, 0.6), (0.45, 0.75, -0.5)):
         m.box((0.06 + 0.1 * a, 0.068 + 0.1 * a), (a - 0.35, b - 0.35), (0.0, 0.008), DARK, turn=turn)
     m.put(w)
@@ -174,8 +175,8 @@ def cable_coil(w: Workbench) -> None:
     m, column = PaletteMesh(), w.choice((WHITE, DARK, *ACCENTS))
     for n in range(6):
         a = math.tau * n / 6
-        x, y = 0.12 * math.cos(a), 0.12 * math.sin(a)
-        m.box((x - 0.005, x + 0.005), (y - 0.07, y + 0.07), (0.0, 0.01), column, turn=a)
+        x, y = polar(0.12, a)
+        m.box(around(x, 0.005), around(y, 0.07), (0.0, 0.01), column, turn=a)
     m.box((0.11, 0.12), (0.0, 0.30), (0.0, 0.01), column, turn=0.2)
     m.box((0.06, 0.11), (0.29, 0.34), (0.0, 0.026), column)
     m.put(w)
@@ -186,8 +187,8 @@ def scattered_magazines(w: Workbench) -> None:
     m = PaletteMesh()
     for n, (x, y) in enumerate(((0.0, 0.0), (0.16, 0.14), (-0.10, 0.22))):
         turn = w.length(-0.8, 0.8)
-        m.box((x - 0.14, x + 0.14), (y - 0.10, y + 0.10), (0.003 * n, 0.003 * n + 0.005), w.choice(ACCENTS), turn=turn)
-        m.box((x - 0.06, x + 0.06), (y - 0.06, y + 0.06), (0.003 * n, 0.003 * n + 0.006), WHITE, turn=turn)
+        m.box(around(x, 0.14), around(y, 0.10), (0.003 * n, 0.003 * n + 0.005), w.choice(ACCENTS), turn=turn)
+        m.box(around(x, 0.06), around(y, 0.06), (0.003 * n, 0.003 * n + 0.006), WHITE, turn=turn)
     m.put(w)
 
 
@@ -196,16 +197,10 @@ def drawings(w: Workbench) -> None:
     m = PaletteMesh()
     for n, (x, y) in enumerate(((0.0, 0.0), (0.20, 0.10), (0.02, 0.27))):
         turn = w.length(-0.7, 0.7)
-        m.box(
-            (x - 0.15, x + 0.15),
-            (y - 0.105, y + 0.105),
-            (0.002 * n, 0.002 * n + 0.003),
-            (WHITE, CREAM)[n % 2],
-            turn=turn,
-        )
-        m.box((x - 0.05, x + 0.05), (y - 0.04, y + 0.04), (0.002 * n, 0.002 * n + 0.004), w.choice(ACCENTS), turn=turn)
+        m.box(around(x, 0.15), around(y, 0.105), (0.002 * n, 0.002 * n + 0.003), (WHITE, CREAM)[n % 2], turn=turn)
+        m.box(around(x, 0.05), around(y, 0.04), (0.002 * n, 0.002 * n + 0.004), w.choice(ACCENTS), turn=turn)
     for x in (-0.12, 0.24):
-        m.box((x - 0.08, x + 0.08), (-0.10, -0.092), (0.0, 0.008), w.choice(ACCENTS), turn=5.0 * x)
+        m.box(around(x, 0.08), (-0.10, -0.092), (0.0, 0.008), w.choice(ACCENTS), turn=5.0 * x)
     m.put(w)
 
 
@@ -226,7 +221,7 @@ def storage_tub(w: Workbench) -> None:
     m.box((-0.18, 0.18), (-0.26, 0.26), (0.0, 0.26), w.choice((TINT, WHITE)))
     m.box((-0.195, 0.195), (-0.275, 0.275), (0.25, 0.285), w.choice(ACCENTS))
     for y in (-1, 1):
-        m.box((-0.05, 0.05), (0.27 * y - 0.01, 0.27 * y + 0.01), (0.18, 0.28), DARK)
+        m.box((-0.05, 0.05), around(0.27 * y, 0.01), (0.18, 0.28), DARK)
     m.put(w, solid=True)
 
 

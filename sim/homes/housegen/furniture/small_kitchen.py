@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.parts import around, polar
 from sim.homes.housegen.furniture.parts.palette_mesh import (
     ACCENTS,
     BROWN,
@@ -66,7 +67,7 @@ def pot_lid(w: Workbench) -> None:
     m.round((0.0, 0.0), [(0.0, r), (0.14, r), (0.165, 0.5 * r)], body, sides=10)
     m.round((0.0, 0.0), [(0.16, 0.02), (0.185, 0.024)], DARK, sides=6)
     for side in (-1, 1):
-        m.box((-0.04, 0.04), (side * (r + 0.015) - 0.02, side * (r + 0.015) + 0.02), (0.10, 0.115), DARK)
+        m.box((-0.04, 0.04), around(side * (r + 0.015), 0.02), (0.10, 0.115), DARK)
     m.put(w)
 
 
@@ -87,7 +88,7 @@ def bread_board(w: Workbench) -> None:
     m = PaletteMesh()
     m.box((-0.12, 0.12), (-0.20, 0.20), (0.0, 0.018), WOOD)
     for y, r in ((-0.11, 0.035), (-0.06, 0.05), (0.0, 0.048)):
-        m.box((-0.05, 0.05), (y - 0.03, y + 0.03), (0.018, 0.04 + r), CARD)
+        m.box((-0.05, 0.05), around(y, 0.03), (0.018, 0.04 + r), CARD)
     m.box((-0.05, 0.05), (0.07, 0.082), (0.018, 0.085), CREAM, roll=-0.9)
     m.box((0.07, 0.085), (-0.05, 0.10), (0.018, 0.022), METAL)
     m.box((0.065, 0.09), (0.10, 0.20), (0.018, 0.034), DARK)
@@ -149,7 +150,7 @@ def fruit_plate(w: Workbench) -> None:
     )
     for n in range(3):
         a = math.tau * n / 3
-        at = (0.42 * r * math.cos(a), 0.42 * r * math.sin(a), 0.07)
+        at = (*polar(0.42 * r, a), 0.07)
         m.ball(at, 0.042, w.choice((GREEN, ACCENTS[2], ACCENTS[3], ACCENTS[4])), sides=5)
     m.put(w)
 
@@ -158,7 +159,7 @@ def table_mats(w: Workbench) -> None:
     """Builds two table mats with plates and glasses."""
     m, mat, dish = PaletteMesh(), w.choice(ACCENTS), w.choice((WHITE, CREAM))
     for y in (-0.22, 0.22):
-        m.box((-0.15, 0.15), (y - 0.20, y + 0.20), (0.0, 0.003), mat)
+        m.box((-0.15, 0.15), around(y, 0.20), (0.0, 0.003), mat)
         _plate(m, (0.0, y), 0.003, 0.12, dish)
         m.cup((-0.11, y + 0.15), (0.003, 0.115), 0.034, TINT, sides=6)
     m.put(w)
@@ -180,9 +181,7 @@ def soap_and_brushes(w: Workbench) -> None:
     m = PaletteMesh()
     m.cup((0.0, 0.0), (0.0, 0.10), 0.036, w.choice((WHITE, *ACCENTS)), sides=6)
     for n in (-1, 1):
-        m.box(
-            (-0.005, 0.005), (0.012 * n - 0.005, 0.012 * n + 0.005), (0.015, 0.185), w.choice(ACCENTS), roll=-0.12 * n
-        )
+        m.box((-0.005, 0.005), around(0.012 * n, 0.005), (0.015, 0.185), w.choice(ACCENTS), roll=-0.12 * n)
     m.box((-0.04, 0.04), (0.06, 0.17), (0.0, 0.015), w.choice((WHITE, TINT)))
     m.box((-0.025, 0.025), (0.08, 0.15), (0.015, 0.035), w.choice((CREAM, ACCENTS[4])))
     m.put(w)
@@ -199,7 +198,7 @@ def pump_bottles(w: Workbench) -> None:
             w.choice((*ACCENTS, WHITE)),
             sides=6,
         )
-        m.box((-0.008, 0.05), (y - 0.008, y + 0.008), (0.17, 0.186), DARK)
+        m.box((-0.008, 0.05), around(y, 0.008), (0.17, 0.186), DARK)
     m.round((0.0, 0.085), [(0.01, 0.032), (0.07, 0.032)], w.choice((TINT, CREAM)), sides=6)
     m.put(w)
 

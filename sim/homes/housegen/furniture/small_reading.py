@@ -6,6 +6,7 @@ Usual sizes: books 0.11-0.17 m by 0.17-0.26 m and 1.5-4.5 cm thick, A4 sheets, l
 from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.parts import around, centred
 from sim.homes.housegen.furniture.parts.palette_mesh import ACCENTS, CREAM, DARK, METAL, TINT, WHITE, WOOD, PaletteMesh
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -16,7 +17,7 @@ def _upright_books(w: Workbench, m: PaletteMesh, count: int, *, graded: bool) ->
     heights = [w.length(0.17, 0.26) for _ in range(count)]
     for high in sorted(heights, reverse=True) if graded else heights:
         thick, deep = w.length(0.02, 0.045), 0.7 * high
-        m.box((-0.5 * deep, 0.5 * deep), (y, y + thick - 0.001), (0.0, high), w.choice((*ACCENTS, CREAM, DARK)))
+        m.box(centred(deep), (y, y + thick - 0.001), (0.0, high), w.choice((*ACCENTS, CREAM, DARK)))
         y += thick
     return y
 
@@ -45,7 +46,7 @@ def book_tower(w: Workbench) -> None:
     for n in range(w.whole(3, 5)):
         thick, long = w.length(0.018, 0.04), w.length(0.18, 0.25) - 0.012 * n
         colour, turn = w.choice(ACCENTS), w.length(-0.35, 0.35)
-        m.box((-0.36 * long, 0.36 * long), (-0.5 * long, 0.5 * long), (z, z + thick), colour, turn=turn)
+        m.box((-0.36 * long, 0.36 * long), centred(long), (z, z + thick), colour, turn=turn)
         m.box(
             (-0.37 * long, 0.30 * long), (-0.51 * long, 0.51 * long), (z + 0.004, z + thick - 0.004), WHITE, turn=turn
         )
@@ -59,7 +60,7 @@ def open_book(w: Workbench) -> None:
     m, cover = PaletteMesh(), w.choice(ACCENTS)
     m.box((-0.11, 0.11), (-0.15, 0.15), (0.0, 0.006), cover)
     for side in (-1, 1):
-        m.box((-0.105, 0.105), (side * 0.072 - 0.07, side * 0.072 + 0.07), (0.004, 0.026), WHITE, roll=side * -0.08)
+        m.box((-0.105, 0.105), around(side * 0.072, 0.07), (0.004, 0.026), WHITE, roll=side * -0.08)
     m.box((-0.10, 0.08), (0.20, 0.33), (0.0, 0.03), w.choice(ACCENTS), turn=0.3)
     m.box((-0.08, 0.08), (-0.19, -0.183), (0.0, 0.007), WOOD, turn=0.2)
     m.put(w)
@@ -73,7 +74,7 @@ def book_and_glasses(w: Workbench) -> None:
     m.box((-0.03, 0.18), (-0.01, 0.005), (0.0, 0.003), w.choice(ACCENTS))
     for y in (-0.04, 0.04):
         m.round((0.02, y), [(0.045, 0.026), (0.050, 0.026)], TINT, sides=6)
-        m.box((-0.09, 0.02), (1.5 * y - 0.002, 1.5 * y + 0.002), (0.045, 0.052), DARK)
+        m.box((-0.09, 0.02), around(1.5 * y, 0.002), (0.045, 0.052), DARK)
     m.box((0.035, 0.04), (-0.06, 0.06), (0.046, 0.052), DARK)
     m.put(w)
 
@@ -83,10 +84,8 @@ def magazine_fan(w: Workbench) -> None:
     m = PaletteMesh()
     for n in range(4):
         y = 0.06 * n
-        m.box(
-            (-0.14, 0.14), (y - 0.10, y + 0.10), (0.005 * n, 0.005 * n + 0.005), w.choice(ACCENTS), turn=0.25 * n - 0.4
-        )
-        m.box((0.05, 0.10), (y - 0.07, y + 0.07), (0.005 * n, 0.005 * n + 0.006), WHITE, turn=0.25 * n - 0.4)
+        m.box((-0.14, 0.14), around(y, 0.10), (0.005 * n, 0.005 * n + 0.005), w.choice(ACCENTS), turn=0.25 * n - 0.4)
+        m.box((0.05, 0.10), around(y, 0.07), (0.005 * n, 0.005 * n + 0.006), WHITE, turn=0.25 * n - 0.4)
     m.put(w)
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, loft, named_mesh
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -50,7 +50,7 @@ def _seat_cushions(w: Workbench, s: _Sofa, look: Look, thick: float) -> None:
     shape = chamfered_box((s.depth - s.back, pitch - 0.006, thick), 0.03)
     for i in range(s.seats):
         w.mesh(shape, (0.5 * s.back, (i + 0.5) * pitch - 0.5 * s.inner, s.seat - 0.5 * thick), look)
-    w.top((-0.5 * s.depth + s.back, 0.5 * s.depth), (-0.5 * s.inner, 0.5 * s.inner), s.seat, "seat")
+    w.top((-0.5 * s.depth + s.back, 0.5 * s.depth), centred(s.inner), s.seat, "seat")
 
 
 def _back_cushions(w: Workbench, s: _Sofa, look: Look, thick: float = 0.14) -> None:
@@ -76,7 +76,7 @@ def _loose_cushions(w: Workbench, s: _Sofa, front_of_back: float) -> None:
 def block_arm(w: Workbench) -> None:
     """Builds a square modern sofa with block arms down to the feet, and seat and back cushions."""
     s, cloth = _measure(w, (0.12, 0.20)), w.look("fabric")
-    w.box((-0.5 * s.depth + 0.02, 0.5 * s.depth - 0.02), (-0.5 * s.inner, 0.5 * s.inner), (0.10, s.seat - 0.15), cloth)
+    w.box(centred(s.depth, 0.02), centred(s.inner), (0.10, s.seat - 0.15), cloth)
     w.mesh(
         chamfered_box((s.back, s.inner + 0.02, s.height - 0.16), 0.03),
         (-0.5 * (s.depth - s.back), 0.0, 0.5 * (s.height + 0.04)),
@@ -91,25 +91,14 @@ def block_arm(w: Workbench) -> None:
         )
     _seat_cushions(w, s, cloth, 0.15)
     _back_cushions(w, s, cloth)
-    w.legs(
-        (-0.5 * s.depth + 0.04, 0.5 * s.depth - 0.04),
-        (-0.5 * s.width + 0.04, 0.5 * s.width - 0.04),
-        (0.0, 0.11),
-        0.05,
-        w.look("dark"),
-    )
+    w.legs(centred(s.depth, 0.04), centred(s.width, 0.04), (0.0, 0.11), 0.05, w.look("dark"))
     _loose_cushions(w, s, s.back + 0.17)
 
 
 def rolled_arm(w: Workbench) -> None:
     """Builds a traditional sofa with scrolled arms, one long back and turned feet."""
     s, cloth, wood = _measure(w, (0.18, 0.22), (0.84, 0.94)), w.look("fabric"), w.look("wood")
-    w.box(
-        (-0.5 * s.depth + 0.03, 0.5 * s.depth - 0.02),
-        (-0.5 * s.inner - 0.05, 0.5 * s.inner + 0.05),
-        (0.10, s.seat - 0.14),
-        cloth,
-    )
+    w.box(centred(s.depth, 0.03, 0.02), (-0.5 * s.inner - 0.05, 0.5 * s.inner + 0.05), (0.10, s.seat - 0.14), cloth)
     w.mesh(
         chamfered_box((s.back, s.inner + 0.10, s.height - 0.14), 0.05),
         (-0.5 * (s.depth - s.back) + 0.02, 0.0, 0.5 * (s.height + 0.10)),
@@ -119,11 +108,11 @@ def rolled_arm(w: Workbench) -> None:
     r = 0.5 * s.arm
     for side in BOTH_SIDES:
         y = side * (0.5 * s.width - r)
-        w.box((-0.5 * s.depth + 0.04, 0.5 * s.depth - 0.03), (y - 0.7 * r, y + 0.7 * r), (0.10, 0.60), cloth)
-        w.rod((-0.5 * s.depth + 0.03, y, 0.60), (0.5 * s.depth, y, 0.60), r, cloth)
-        w.rod((0.5 * s.depth, y, 0.60), (0.5 * s.depth + 0.01, y, 0.60), 0.7 * r, wood, solid=False)
+        w.box(centred(s.depth, 0.04, 0.03), around(y, 0.7 * r), (0.10, 0.60), cloth)
+        w.rod_x((y, 0.60), (-0.5 * s.depth + 0.03, 0.5 * s.depth), r, cloth)
+        w.rod_x((y, 0.60), (0.5 * s.depth, 0.5 * s.depth + 0.01), 0.7 * r, wood, solid=False)
     _seat_cushions(w, s, cloth, 0.16)
-    for sx in (-0.5 * s.depth + 0.08, 0.5 * s.depth - 0.07):
+    for sx in centred(s.depth, 0.08, 0.07):
         for side in BOTH_SIDES:
             w.cylinder((sx, side * (0.5 * s.width - 0.09)), (0.0, 0.11), 0.028, wood)
     _loose_cushions(w, s, s.back + 0.05)
@@ -137,12 +126,10 @@ def wooden_frame(w: Workbench) -> None:
         y = side * half
         w.bar((0.5 * s.depth - 0.06, y, 0.0), (0.5 * s.depth - 0.10, y, 0.58), 0.04, 0.04, wood)
         w.bar((-0.5 * s.depth + 0.08, y, 0.0), (-0.5 * s.depth + 0.14, y, 0.58), 0.04, 0.04, wood)
-        w.box((-0.5 * s.depth + 0.06, 0.5 * s.depth - 0.04), (y - 0.025, y + 0.025), (0.57, 0.60), wood)
+        w.box(centred(s.depth, 0.06, 0.04), around(y, 0.025), (0.57, 0.60), wood)
     for x in (0.5 * s.depth - 0.10, -0.5 * s.depth + 0.12):
-        w.box((x - 0.015, x + 0.015), (-half, half), (s.seat - 0.24, s.seat - 0.16), wood)
-    w.box(
-        (-0.5 * s.depth + 0.12, 0.5 * s.depth - 0.10), (-half + 0.02, half - 0.02), (s.seat - 0.18, s.seat - 0.15), wood
-    )
+        w.box(around(x, 0.015), (-half, half), (s.seat - 0.24, s.seat - 0.16), wood)
+    w.box(centred(s.depth, 0.12, 0.10), (-half + 0.02, half - 0.02), (s.seat - 0.18, s.seat - 0.15), wood)
     w.bar(
         (-0.5 * s.depth + 0.12, 0.0, s.seat - 0.18),
         (-0.5 * s.depth + 0.02, 0.0, s.height - 0.06),
@@ -159,29 +146,14 @@ def chesterfield(w: Workbench) -> None:
     """Builds a leather sofa with arms as high as the back, all three rolled, and rows of buttons."""
     s, hide = _measure(w, (0.20, 0.24), (0.70, 0.76)), w.look("leather")
     r = 0.5 * s.arm
-    w.box(
-        (-0.5 * s.depth + 0.05, 0.5 * s.depth - 0.03),
-        (-0.5 * s.width + 0.05, 0.5 * s.width - 0.05),
-        (0.09, s.seat - 0.14),
-        hide,
-    )
-    w.box(
-        (-0.5 * s.depth + 0.05, -0.5 * s.depth + 0.19),
-        (-0.5 * s.width + 0.05, 0.5 * s.width - 0.05),
-        (0.2, s.height - r),
-        hide,
-    )
-    w.rod(
-        (-0.5 * s.depth + r, -0.5 * s.width + r, s.height - r),
-        (-0.5 * s.depth + r, 0.5 * s.width - r, s.height - r),
-        r,
-        hide,
-    )
+    w.box(centred(s.depth, 0.05, 0.03), centred(s.width, 0.05), (0.09, s.seat - 0.14), hide)
+    w.box((-0.5 * s.depth + 0.05, -0.5 * s.depth + 0.19), centred(s.width, 0.05), (0.2, s.height - r), hide)
+    w.rod_y((-0.5 * s.depth + r, s.height - r), centred(s.width, r), r, hide)
     for side in BOTH_SIDES:
         y = side * (0.5 * s.width - r)
-        w.rod((-0.5 * s.depth + r, y, s.height - r), (0.5 * s.depth - 0.02, y, s.height - r), r, hide)
+        w.rod_x((y, s.height - r), centred(s.depth, r, 0.02), r, hide)
         w.ball((-0.5 * s.depth + r, y, s.height - r), r, hide)
-        w.box((-0.5 * s.depth + 0.05, 0.5 * s.depth - 0.03), (y - 0.6 * r, y + 0.6 * r), (0.2, s.height - r), hide)
+        w.box(centred(s.depth, 0.05, 0.03), around(y, 0.6 * r), (0.2, s.height - r), hide)
     _seat_cushions(w, s, hide, 0.15)
     for i in range(4):
         w.ellipsoid(
@@ -190,13 +162,7 @@ def chesterfield(w: Workbench) -> None:
             w.look("brass"),
             solid=False,
         )
-    w.legs(
-        (-0.5 * s.depth + 0.06, 0.5 * s.depth - 0.05),
-        (-0.5 * s.width + 0.06, 0.5 * s.width - 0.06),
-        (0.0, 0.10),
-        0.06,
-        w.look("wood"),
-    )
+    w.legs(centred(s.depth, 0.06, 0.05), centred(s.width, 0.06), (0.0, 0.10), 0.06, w.look("wood"))
     _loose_cushions(w, s, 2 * r)
 
 
@@ -246,7 +212,7 @@ def corner(w: Workbench) -> None:
         (x0 + chaise - 0.07, far - side * (wide - 0.05)),
     ):
         w.cylinder((x, y), (0.0, 0.11), 0.022, w.look("dark"))
-    w.top((x0 + s.back + 0.1, 0.5 * depth), (-0.5 * total + 0.3, 0.5 * total - 0.3), s.seat, "seat")
+    w.top((x0 + s.back + 0.1, 0.5 * depth), centred(total, 0.3), s.seat, "seat")
     moved = _Sofa(width, depth, s.height, s.seat, s.arm + 0.08, s.back)
     _loose_cushions(w, moved, s.back + 0.16)
 
@@ -262,12 +228,12 @@ def daybed(w: Workbench) -> None:
     for side in BOTH_SIDES:
         y = side * (half - 0.015)
         for x in (x0 + 0.015, x1 - 0.015):
-            w.rod((x, y, 0.0), (x, y, top), 0.015, metal)
-        w.rod((x0 + 0.015, y, top - 0.01), (x1 - 0.015, y, top - 0.01), 0.012, metal)
+            w.cylinder((x, y), (0.0, top), 0.015, metal)
+        w.rod_x((y, top - 0.01), (x0 + 0.015, x1 - 0.015), 0.012, metal)
         for i in range(3):
             x = x0 + depth * (i + 1) / 4
-            w.rod((x, y, seat - 0.2), (x, y, top - 0.01), 0.008, metal)
-    w.rod((x0 + 0.015, -half + 0.015, top - 0.01), (x0 + 0.015, half - 0.015, top - 0.01), 0.012, metal)
+            w.cylinder((x, y), (seat - 0.2, top - 0.01), 0.008, metal)
+    w.rod_y((x0 + 0.015, top - 0.01), (-half + 0.015, half - 0.015), 0.012, metal)
     for i in range(3):
         pitch = (width - 0.08) / 3
         w.mesh(
@@ -292,7 +258,7 @@ def camelback(w: Workbench) -> None:
         w.rod((x0 + 0.06, *a), (x0 + 0.06, *b), 0.025, wood, round_ends=True)
     for side in BOTH_SIDES:
         y = side * (half - 0.5 * s.arm)
-        w.box((x0 + 0.06, 0.5 * s.depth - 0.05), (y - 0.05, y + 0.05), (s.seat - 0.22, 0.60), cloth)
+        w.box((x0 + 0.06, 0.5 * s.depth - 0.05), around(y, 0.05), (s.seat - 0.22, 0.60), cloth)
         w.rod((x0 + 0.08, y, 0.61), (0.5 * s.depth - 0.06, y, 0.60), 0.075, cloth, round_ends=True)
     _seat_cushions(w, s, cloth, 0.14)
     _back_cushions(w, replace(s, height=s.height - 0.06), cloth, 0.12)  # below the crest

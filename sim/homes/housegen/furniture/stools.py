@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, polar
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, puffed, strip
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -34,8 +34,8 @@ def bar_wood(w: Workbench) -> None:
             )
     for side in BOTH_SIDES:
         edge = half + 0.002
-        w.box((side * edge - 0.012, side * edge + 0.012), (-edge, edge), (0.24, 0.27), wood)
-        w.box((-edge, edge), (side * edge - 0.012, side * edge + 0.012), (0.30, 0.33), wood)
+        w.box(around(side * edge, 0.012), (-edge, edge), (0.24, 0.27), wood)
+        w.box((-edge, edge), around(side * edge, 0.012), (0.30, 0.33), wood)
 
 
 def low_round(w: Workbench) -> None:
@@ -73,9 +73,9 @@ def saddle(w: Workbench) -> None:
         y = side * (half - 0.02)
         for x0, x1 in ((-0.19, -0.10), (0.19, 0.10)):
             w.rod((x0, y, 0.009), (x1, y * 0.8, seat - 0.05), 0.009, iron, round_ends=True)
-        w.rod((-0.19, y, 0.009), (0.19, y, 0.009), 0.009, iron)
+        w.rod_x((y, 0.009), (-0.19, 0.19), 0.009, iron)
     for x, z in ((0.163, 0.20), (-0.163, 0.20)):
-        w.rod((x, -half + 0.03, z), (x, half - 0.03, z), 0.009, iron)
+        w.rod_y((x, z), (-half + 0.03, half - 0.03), 0.009, iron)
 
 
 def bar_swivel(w: Workbench) -> None:
@@ -101,8 +101,8 @@ def step_stool(w: Workbench) -> None:
     )
     for side in BOTH_SIDES:
         y = side * (half - 0.012)
-        w.box((-0.20, 0.0), (y - 0.012, y + 0.012), (0.0, high - 0.025), look)
-        w.box((0.0, 0.20), (y - 0.012, y + 0.012), (0.0, 0.5 * high - 0.025), look)
+        w.box((-0.20, 0.0), around(y, 0.012), (0.0, high - 0.025), look)
+        w.box((0.0, 0.20), around(y, 0.012), (0.0, 0.5 * high - 0.025), look)
     w.box((-0.21, 0.01), (-half, half), (high - 0.025, high), look)
     w.box((0.0, 0.21), (-half, half), (0.5 * high - 0.025, 0.5 * high), look)
     w.box((-0.20, -0.185), (-half + 0.02, half - 0.02), (0.08, high - 0.03), look)
@@ -115,12 +115,7 @@ def vanity_stool(w: Workbench) -> None:
     w.mesh(puffed(r, 0.10, firm=4.0), (0.0, 0.0, seat - 0.10), w.look("bright"))
     for i in range(4):
         a = math.tau * (i + 0.5) / 4
-        w.rod(
-            (0.9 * r * math.cos(a), 0.9 * r * math.sin(a), 0.0),
-            (0.9 * r * math.cos(a), 0.9 * r * math.sin(a), seat - 0.08),
-            0.012,
-            metal,
-        )
+        w.rod((*polar(0.9 * r, a), 0.0), (*polar(0.9 * r, a), seat - 0.08), 0.012, metal)
     w.rod((0.64 * r, 0.64 * r, 0.10), (-0.64 * r, -0.64 * r, 0.10), 0.007, metal)
     w.rod((0.64 * r, -0.64 * r, 0.10), (-0.64 * r, 0.64 * r, 0.10), 0.007, metal)
 
@@ -138,8 +133,8 @@ def bar_steel(w: Workbench) -> None:
                 steel,
             )
     for side in BOTH_SIDES:
-        w.box((side * 0.172 - 0.006, side * 0.172 + 0.006), (-0.17, 0.17), (0.26, 0.30), steel)
-        w.box((-0.17, 0.17), (side * 0.172 - 0.006, side * 0.172 + 0.006), (0.26, 0.30), steel)
+        w.box(around(side * 0.172, 0.006), (-0.17, 0.17), (0.26, 0.30), steel)
+        w.box((-0.17, 0.17), around(side * 0.172, 0.006), (0.26, 0.30), steel)
 
 
 def stump(w: Workbench) -> None:
@@ -168,8 +163,8 @@ def folding_stool(w: Workbench) -> None:
         w.bar((-0.20, y, 0.0), (0.20, y, seat), 0.022, 0.03, wood)
         w.bar((0.20, y * 0.88, 0.0), (-0.20, y * 0.88, seat), 0.022, 0.03, wood)
     for x in (-0.20, 0.20):
-        w.rod((x, -half, seat - 0.01), (x, half, seat - 0.01), 0.015, wood)
-        w.rod((x * 0.9, -half + 0.02, 0.05), (x * 0.9, half - 0.02, 0.05), 0.010, wood)
+        w.rod_y((x, seat - 0.01), (-half, half), 0.015, wood)
+        w.rod_y((x * 0.9, 0.05), (-half + 0.02, half - 0.02), 0.010, wood)
     w.mesh(
         strip([(-0.21, seat), (-0.10, seat - 0.035), (0.10, seat - 0.035), (0.21, seat)], 0.008, 2 * half - 0.05),
         (0.0, 0.0, 0.0),

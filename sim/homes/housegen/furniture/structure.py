@@ -6,18 +6,18 @@ Sizes follow Neufert, Architects' Data: railings 0.90-1.10 m high, balusters at 
 from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
 def baluster_railing(w: Workbench) -> None:
     """Builds a railing along y with a hand rail on posts and balusters."""
     width, high, wood, white = w.width(1.0, 2.4), w.length(0.90, 1.05), w.look("wood"), w.look("lacquer")
-    w.box((-0.03, 0.03), (-0.5 * width, 0.5 * width), (high - 0.05, high), wood)
-    w.box((-0.02, 0.02), (-0.5 * width, 0.5 * width), (0.06, 0.10), white)
+    w.box((-0.03, 0.03), centred(width), (high - 0.05, high), wood)
+    w.box((-0.02, 0.02), centred(width), (0.06, 0.10), white)
     for side in BOTH_SIDES:
         c = side * (0.5 * width - 0.04)
-        w.box((-0.045, 0.045), (c - 0.045, c + 0.045), (0.0, high + 0.06), wood)
+        w.box((-0.045, 0.045), around(c, 0.045), (0.0, high + 0.06), wood)
     count = max(3, round(width / 0.14))
     for i in range(1, count):
         w.cylinder((0.0, -0.5 * width + i * width / count), (0.09, high - 0.04), 0.013, white)
@@ -26,12 +26,12 @@ def baluster_railing(w: Workbench) -> None:
 def glass_railing(w: Workbench) -> None:
     """Builds a railing with a glass pane under a metal rail."""
     width, high, metal = w.width(1.0, 2.4), w.length(0.95, 1.10), w.look("chrome")
-    w.rod((0.0, -0.5 * width, high - 0.022), (0.0, 0.5 * width, high - 0.022), 0.022, metal)
-    w.box((-0.006, 0.006), (-0.5 * width + 0.03, 0.5 * width - 0.03), (0.05, high - 0.03), w.look("glass"))
+    w.rod_y((0.0, high - 0.022), centred(width), 0.022, metal)
+    w.box((-0.006, 0.006), centred(width, 0.03), (0.05, high - 0.03), w.look("glass"))
     for side in BOTH_SIDES:
         c = side * (0.5 * width - 0.02)
-        w.box((-0.02, 0.02), (c - 0.02, c + 0.02), (0.0, high - 0.02), metal)
-    w.box((-0.03, 0.03), (-0.5 * width, 0.5 * width), (0.0, 0.06), metal)
+        w.box((-0.02, 0.02), around(c, 0.02), (0.0, high - 0.02), metal)
+    w.box((-0.03, 0.03), centred(width), (0.0, 0.06), metal)
 
 
 def round_column(w: Workbench) -> None:
@@ -61,14 +61,14 @@ def square_column(w: Workbench) -> None:
 def steel_cable_railing(w: Workbench) -> None:
     """Builds a railing of posts with five cables under a rail."""
     width, high, metal = w.width(1.0, 2.4), w.length(0.92, 1.05), w.look("metal")
-    w.box((-0.03, 0.03), (-0.5 * width, 0.5 * width), (high - 0.03, high), w.look("wood"))
+    w.box((-0.03, 0.03), centred(width), (high - 0.03, high), w.look("wood"))
     posts = max(2, round(width / 1.0) + 1)
     for i in range(posts):
         c = -0.5 * width + 0.02 + i * (width - 0.04) / (posts - 1)
-        w.box((-0.02, 0.02), (c - 0.02, c + 0.02), (0.0, high - 0.02), metal)
+        w.box((-0.02, 0.02), around(c, 0.02), (0.0, high - 0.02), metal)
     for i in range(5):
         z = 0.12 + i * (high - 0.24) / 4
-        w.rod((0.0, -0.5 * width + 0.01, z), (0.0, 0.5 * width - 0.01, z), 0.005, metal)
+        w.rod_y((0.0, z), centred(width, 0.01), 0.005, metal)
 
 
 STYLES = (

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.shapes import Ring, frustum, loft
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
@@ -17,9 +17,9 @@ from sim.homes.housegen.furniture.workbench import Range, Workbench
 def _apron(w: Workbench, x: Range, y: Range, z: Range, look: Look) -> None:
     """Adds four boards under a top."""
     for edge in x:
-        w.box((edge - 0.011, edge + 0.011), y, z, look)
+        w.box(around(edge, 0.011), y, z, look)
     for edge in y:
-        w.box(x, (edge - 0.011, edge + 0.011), z, look)
+        w.box(x, around(edge, 0.011), z, look)
 
 
 def _stem(w: Workbench, rings: list[Ring], look: Look) -> None:
@@ -38,8 +38,8 @@ def farmhouse(w: Workbench) -> None:
     wood = w.look("wood")
     legs = w.look("lacquer") if w.chance(0.35) else wood
     x, y = parts.slab(w, depth, width, (height - w.length(0.03, 0.05), height), wood)
-    _apron(w, (x[0] + 0.06, x[1] - 0.06), (y[0] + 0.06, y[1] - 0.06), (height - 0.13, height - 0.03), legs)
-    w.legs((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.0, height - 0.03), w.length(0.06, 0.09), legs)
+    _apron(w, inset(x, 0.06), inset(y, 0.06), (height - 0.13, height - 0.03), legs)
+    w.legs(inset(x, 0.03), inset(y, 0.03), (0.0, height - 0.03), w.length(0.06, 0.09), legs)
 
 
 def splayed(w: Workbench) -> None:
@@ -47,7 +47,7 @@ def splayed(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 1.80), w.depth(0.78, 0.90), w.length(0.73, 0.75)
     wood = w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.025, height), w.look("lacquer") if w.chance(0.4) else wood)
-    w.box((x[0] + 0.12, x[1] - 0.12), (y[0] + 0.15, y[1] - 0.15), (height - 0.075, height - 0.025), wood)
+    w.box(inset(x, 0.12), inset(y, 0.15), (height - 0.075, height - 0.025), wood)
     for sx in BOTH_SIDES:
         for sy in BOTH_SIDES:
             leg = frustum((0.030, 0.030), (0.055, 0.055), height - 0.025, (-sx * 0.07, -sy * 0.07))
@@ -78,10 +78,10 @@ def industrial(w: Workbench) -> None:
     parts.slab(w, depth, width, (height - 0.045, height), w.look("wood"))
     for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.22)
-        for x in (-0.5 * depth + 0.06, 0.5 * depth - 0.06):
-            w.box((x - 0.03, x + 0.03), (y - 0.03, y + 0.03), (0.0, height - 0.045), steel)
-        w.box((-0.5 * depth + 0.09, 0.5 * depth - 0.09), (y - 0.03, y + 0.03), (0.0, 0.04), steel)
-        w.box((-0.5 * depth + 0.09, 0.5 * depth - 0.09), (y - 0.03, y + 0.03), (height - 0.085, height - 0.045), steel)
+        for x in centred(depth, 0.06):
+            w.box(around(x, 0.03), around(y, 0.03), (0.0, height - 0.045), steel)
+        w.box(centred(depth, 0.09), around(y, 0.03), (0.0, 0.04), steel)
+        w.box(centred(depth, 0.09), around(y, 0.03), (height - 0.085, height - 0.045), steel)
 
 
 def trestle(w: Workbench) -> None:
@@ -91,9 +91,9 @@ def trestle(w: Workbench) -> None:
     parts.slab(w, depth, width, (height - 0.05, height), wood)
     for side in BOTH_SIDES:
         y = side * 0.32 * width
-        w.box((-0.22, 0.22), (y - 0.03, y + 0.03), (0.06, height - 0.10), wood)
-        w.box((-0.36, 0.36), (y - 0.045, y + 0.045), (0.0, 0.07), wood)
-        w.box((-0.34, 0.34), (y - 0.045, y + 0.045), (height - 0.11, height - 0.05), wood)
+        w.box((-0.22, 0.22), around(y, 0.03), (0.06, height - 0.10), wood)
+        w.box((-0.36, 0.36), around(y, 0.045), (0.0, 0.07), wood)
+        w.box((-0.34, 0.34), around(y, 0.045), (height - 0.11, height - 0.05), wood)
     w.box((-0.02, 0.02), (-0.32 * width - 0.06, 0.32 * width + 0.06), (0.26, 0.36), wood)
 
 
@@ -104,16 +104,16 @@ def glass_dining(w: Workbench) -> None:
     metal = w.look("brass")
     for side in BOTH_SIDES:
         edge = side * (0.5 * depth - 0.012)
-        w.box((edge - 0.012, edge + 0.012), y, (height - 0.04, height - 0.015), metal, solid=False)
+        w.box(around(edge, 0.012), y, (height - 0.04, height - 0.015), metal, solid=False)
         edge = side * (0.5 * width - 0.012)
-        w.box(x, (edge - 0.012, edge + 0.012), (height - 0.04, height - 0.015), metal, solid=False)
+        w.box(x, around(edge, 0.012), (height - 0.04, height - 0.015), metal, solid=False)
     for side in BOTH_SIDES:
         foot, head = (side * 0.30, -0.30 * width), (-side * 0.30, 0.30 * width)
         w.bar((*foot, 0.02), (*head, height - 0.03), 0.05, 0.025, metal)
         w.bar((foot[0], -foot[1], 0.02), (head[0], -head[1], height - 0.03), 0.05, 0.025, metal)
     for y in (-0.30 * width, 0.30 * width):
-        w.box((-0.33, 0.33), (y - 0.03, y + 0.03), (0.0, 0.03), metal)
-        w.box((x[0], x[1]), (y - 0.03, y + 0.03), (height - 0.04, height - 0.015), metal)
+        w.box((-0.33, 0.33), around(y, 0.03), (0.0, 0.03), metal)
+        w.box((x[0], x[1]), around(y, 0.03), (height - 0.04, height - 0.015), metal)
 
 
 def tulip_legs_round(w: Workbench) -> None:
@@ -134,11 +134,11 @@ def desk_pedestal(w: Workbench) -> None:
     side = w.choice(BOTH_SIDES)
     near, far = side * (0.5 * width - 0.02), side * (0.5 * width - 0.42)
     low, high = min(near, far), max(near, far)
-    w.box((x[0] + 0.02, x[1] - 0.05), (low, high), (0.05, height - 0.03), wood)
-    w.box((x[0] + 0.05, x[1] - 0.09), (low + 0.02, high - 0.02), (0.0, 0.05), w.look("dark"))
+    w.box(inset(x, 0.02, 0.05), (low, high), (0.05, height - 0.03), wood)
+    w.box(inset(x, 0.05, 0.09), (low + 0.02, high - 0.02), (0.0, 0.05), w.look("dark"))
     parts.plain_drawers(w, x[1] - 0.05, (low, high), (0.06, height - 0.04), 3, 1, front, w.look("chrome"))
     panel = -side * (0.5 * width - 0.035)
-    w.box((x[0] + 0.02, x[1] - 0.04), (panel - 0.015, panel + 0.015), (0.0, height - 0.03), wood)
+    w.box(inset(x, 0.02, 0.04), around(panel, 0.015), (0.0, height - 0.03), wood)
     w.box((x[0] + 0.05, x[0] + 0.068), (min(far, panel), max(far, panel)), (0.30, height - 0.03), wood)
 
 
@@ -149,10 +149,10 @@ def desk_frame(w: Workbench) -> None:
     parts.slab(w, depth, width, (height - 0.025, height), w.look("lacquer") if w.chance(0.5) else w.look("wood"))
     for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.16)
-        w.box((-0.03, 0.03), (y - 0.04, y + 0.04), (0.03, height - 0.06), steel)
-        w.box((-0.45 * depth, 0.45 * depth), (y - 0.035, y + 0.035), (0.0, 0.035), steel)
-        w.box((-0.40 * depth, 0.40 * depth), (y - 0.02, y + 0.02), (height - 0.06, height - 0.025), steel)
-    w.box((-0.02, 0.02), (-0.5 * width + 0.16, 0.5 * width - 0.16), (height - 0.10, height - 0.06), steel)
+        w.box((-0.03, 0.03), around(y, 0.04), (0.03, height - 0.06), steel)
+        w.box((-0.45 * depth, 0.45 * depth), around(y, 0.035), (0.0, 0.035), steel)
+        w.box((-0.40 * depth, 0.40 * depth), around(y, 0.02), (height - 0.06, height - 0.025), steel)
+    w.box((-0.02, 0.02), centred(width, 0.16), (height - 0.10, height - 0.06), steel)
 
 
 def secretary(w: Workbench) -> None:
@@ -161,25 +161,17 @@ def secretary(w: Workbench) -> None:
     wood = w.look("wood")
     x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.02, height), wood)
-    w.box((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (height - 0.13, height - 0.02), wood)
+    w.box(inset(x, 0.03), inset(y, 0.03), (height - 0.13, height - 0.02), wood)
     parts.plain_drawers(
-        w,
-        x[1] - 0.03,
-        (y[0] + 0.05, y[1] - 0.05),
-        (height - 0.125, height - 0.025),
-        1,
-        2,
-        wood,
-        w.look("brass"),
-        "knob",
+        w, x[1] - 0.03, inset(y, 0.05), (height - 0.125, height - 0.025), 1, 2, wood, w.look("brass"), "knob"
     )
-    w.legs((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.0, height - 0.03), 0.04, wood)
+    w.legs(inset(x, 0.02), inset(y, 0.02), (0.0, height - 0.03), 0.04, wood)
     w.box((x[0], x[0] + 0.18), y, (height + 0.22, height + 0.24), wood)
     w.box((x[0], x[0] + 0.012), y, (height, height + 0.22), wood)
     for i in range(4):
         edge = y[0] + 0.009 + (width - 0.018) * i / 3
-        w.box((x[0], x[0] + 0.18), (edge - 0.009, edge + 0.009), (height, height + 0.22), wood)
-    w.top((x[0] + 0.22, x[1] - 0.04), (y[0] + 0.05, y[1] - 0.05), height)
+        w.box((x[0], x[0] + 0.18), around(edge, 0.009), (height, height + 0.22), wood)
+    w.top(inset(x, 0.22, 0.04), inset(y, 0.05), height)
 
 
 def wing_desk(w: Workbench) -> None:
@@ -188,15 +180,15 @@ def wing_desk(w: Workbench) -> None:
     top, body, metal = w.look("wood"), w.look("lacquer"), w.look("metal")
     x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.035, height), top)
-    w.box((x[0] + 0.04, x[1] - 0.04), (y[0] + 0.04, y[0] + 0.42), (0.03, height - 0.035), body)
+    w.box(inset(x, 0.04), (y[0] + 0.04, y[0] + 0.42), (0.03, height - 0.035), body)
     for n in range(3):
         z = 0.06 + n * (height - 0.12) / 3
         w.box((x[1] - 0.04, x[1] - 0.025), (y[0] + 0.05, y[0] + 0.41), (z, z + 0.19), body, solid=False)
         w.box((x[1] - 0.026, x[1] - 0.01), (y[0] + 0.17, y[0] + 0.29), (z + 0.13, z + 0.145), metal, solid=False)
-    for end in (x[0] + 0.05, x[1] - 0.05):
+    for end in inset(x, 0.05):
         w.bar((end, y[1] - 0.06, 0.0), (0.4 * end, y[1] - 0.10, height - 0.035), 0.035, 0.035, metal)
     w.bar((x[0] + 0.08, y[1] - 0.07, 0.14), (x[1] - 0.08, y[1] - 0.07, 0.14), 0.03, 0.03, metal)
-    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), height)
+    w.top(inset(x, 0.03), inset(y, 0.03), height)
 
 
 STYLES = (

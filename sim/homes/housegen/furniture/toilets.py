@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -77,7 +77,7 @@ def _toilet(
         w.mesh(loft(flat, 14, hull=True), (middle, 0.0, rim), cover)
         w.mesh(lid, (middle, 0.0, seat + 0.002), cover)
     for side in BOTH_SIDES:
-        w.box((seat_x - 0.01, seat_x + 0.035), (side * 0.08 - 0.015, side * 0.08 + 0.015), (rim, seat + 0.006), cover,
+        w.box((seat_x - 0.01, seat_x + 0.035), around(side * 0.08, 0.015), (rim, seat + 0.006), cover,
               solid=False)  # fmt: skip
 
 
@@ -111,10 +111,10 @@ def high_cistern(w: Workbench) -> None:
     x0 = -0.30
     w.box((x0 + 0.02, x0 + 0.24), (-0.09, 0.09), (0.12, seat - 0.03), white)
     _toilet(w, (x0 + 0.06, 0.30), half, seat, white, wood, profile=PEDESTAL, open_=True, seat_x=x0 + 0.10)
-    w.rod((x0 + 0.04, 0.0, 0.30), (x0 + 0.04, 0.0, 1.70), 0.018, brass)
+    w.cylinder((x0 + 0.04, 0.0), (0.30, 1.70), 0.018, brass)
     w.box((x0, x0 + 0.19), (-0.24, 0.24), (1.68, 2.0), white)
     w.box((x0, x0 + 0.20), (-0.25, 0.25), (2.0, 2.02), wood)
-    w.rod((x0 + 0.15, 0.22, 1.05), (x0 + 0.15, 0.22, 1.69), 0.004, brass, solid=False)
+    w.cylinder((x0 + 0.15, 0.22), (1.05, 1.69), 0.004, brass, solid=False)
     w.ball((x0 + 0.15, 0.22, 1.04), 0.02, wood, solid=False)
     for z in (0.8, 1.4):
         w.box((x0, x0 + 0.05), (-0.03, 0.03), (z, z + 0.02), brass, solid=False)
@@ -126,10 +126,10 @@ def low_level(w: Workbench) -> None:
     x0 = -0.34
     w.mesh(chamfered_box((0.18, 0.46, 0.34), 0.03), (x0 + 0.09, 0.0, 0.86), white)
     w.mesh(chamfered_box((0.20, 0.48, 0.03), 0.012), (x0 + 0.10, 0.0, 1.04), white)
-    w.rod((x0 + 0.18, -0.15, 0.96), (x0 + 0.20, -0.15, 0.96), 0.012, chrome, solid=False)
+    w.rod_x((-0.15, 0.96), (x0 + 0.18, x0 + 0.20), 0.012, chrome, solid=False)
     w.bar((x0 + 0.205, -0.15, 0.96), (x0 + 0.205, -0.07, 0.94), 0.012, 0.012, chrome, solid=False)
-    w.rod((x0 + 0.09, 0.0, 0.28), (x0 + 0.09, 0.0, 0.72), 0.022, chrome)
-    w.rod((x0 + 0.09, 0.0, 0.30), (x0 + 0.22, 0.0, 0.30), 0.022, chrome, round_ends=True)
+    w.cylinder((x0 + 0.09, 0.0), (0.28, 0.72), 0.022, chrome)
+    w.rod_x((0.0, 0.30), (x0 + 0.09, x0 + 0.22), 0.022, chrome, round_ends=True)
     w.box((x0 + 0.03, x0 + 0.26), (-0.09, 0.09), (0.0, 0.29), white)
     _toilet(w, (x0 + 0.10, 0.32), half, seat, white, white, profile=PEDESTAL, open_=w.chance(0.5), seat_x=x0 + 0.16)
 

@@ -9,7 +9,7 @@ import itertools
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, darker
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, darker
 from sim.homes.housegen.furniture.shapes import chamfered_box, drape
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -19,9 +19,9 @@ def towel_rail(w: Workbench) -> None:
     width = w.width(0.50, 0.70)
     chrome, cloth = w.look("chrome"), w.look("towel")
     w.mount_height_m = 0.75
-    w.rod((0.07, -0.5 * width, 0.5), (0.07, 0.5 * width, 0.5), 0.009, chrome)
+    w.rod_y((0.07, 0.5), centred(width), 0.009, chrome)
     for side in (-1, 1):
-        w.rod((0.0, side * (0.5 * width - 0.01), 0.5), (0.07, side * (0.5 * width - 0.01), 0.5), 0.012, chrome)
+        w.rod_x((side * (0.5 * width - 0.01), 0.5), (0.0, 0.07), 0.012, chrome)
     w.mesh(drape(width - 0.10, 0.5, 0.02, 4), (0.078, 0.0, 0.0), cloth)
     w.mesh(drape(width - 0.10, 0.36, 0.02, 4), (0.042, 0.0, 0.14), cloth)
 
@@ -33,13 +33,13 @@ def towel_radiator(w: Workbench) -> None:
     white = w.look("ceramic") if w.chance(0.5) else w.look("chrome")
     for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.015)
-        w.box((0.05, 0.08), (y - 0.015, y + 0.015), (0.0, high), white)
+        w.box((0.05, 0.08), around(y, 0.015), (0.0, high), white)
         for z in (0.08, high - 0.08):
-            w.rod((0.0, y, z), (0.06, y, z), 0.012, white, solid=False)
+            w.rod_x((y, z), (0.0, 0.06), 0.012, white, solid=False)
     count = 9
     for i in range(count):
         z = 0.06 + i * (high - 0.12) / (count - 1)
-        w.rod((0.065, -0.5 * width + 0.01, z), (0.065, 0.5 * width - 0.01, z), 0.011, white)
+        w.rod_y((0.065, z), centred(width, 0.01), 0.011, white)
     z = 0.06 + 6 * (high - 0.12) / (count - 1)
     w.mesh(drape(width - 0.08, 0.42, 0.025, 3), (0.078, 0.0, z - 0.41), w.look("towel"))
     if w.chance(0.5):
@@ -51,7 +51,7 @@ def towel_hooks(w: Workbench) -> None:
     """Builds two or three towels on pegs of a board."""
     width, wood = w.width(0.50, 0.80), w.look("wood")
     w.mount_height_m = 0.70
-    w.box((0.0, 0.018), (-0.5 * width, 0.5 * width), (0.86, 0.94), wood)
+    w.box((0.0, 0.018), centred(width), (0.86, 0.94), wood)
     count = 2 if width < 0.6 else 3
     for i in range(count):
         y = (i + 0.5) * width / count - 0.5 * width
@@ -75,7 +75,7 @@ def towel_ladder(w: Workbench) -> None:
     for i in range(5):
         t = 0.15 + 0.175 * i
         x, z = (0.5 - t) * (depth - 0.04), t * high
-        w.rod((x, -half + 0.02, z), (x, half - 0.02, z), 0.014, wood)
+        w.rod_y((x, z), (-half + 0.02, half - 0.02), 0.014, wood)
     for k, i in enumerate((4, 2)):
         t = 0.15 + 0.175 * i
         x, z = (0.5 - t) * (depth - 0.04), t * high
@@ -104,7 +104,7 @@ def towel_ring(w: Workbench) -> None:
     """Builds a hand towel drawn through a brass ring."""
     cloth, brass = w.look("towel"), w.look("brass")
     w.mount_height_m = 0.80
-    w.rod((0.0, 0.0, 0.56), (0.04, 0.0, 0.56), 0.022, brass)
+    w.rod_x((0.0, 0.56), (0.0, 0.04), 0.022, brass)
     points = [(0.04, 0.085 * math.sin(a), 0.475 + 0.085 * math.cos(a)) for a in (i * math.tau / 8 for i in range(9))]
     for a, b in itertools.pairwise(points):
         w.rod(a, b, 0.006, brass, round_ends=True)
@@ -141,11 +141,11 @@ def towel_stand(w: Workbench) -> None:
     half, high, metal = 0.5 * w.width(0.50, 0.65), w.length(0.85, 1.0), w.look("iron")
     for side in BOTH_SIDES:
         y = side * half
-        w.rod((0.0, y, 0.0), (0.0, y, high), 0.011, metal)
-        w.rod((-0.13, y, 0.011), (0.13, y, 0.011), 0.011, metal)
+        w.cylinder((0.0, y), (0.0, high), 0.011, metal)
+        w.rod_x((y, 0.011), (-0.13, 0.13), 0.011, metal)
         w.rod((-0.10, y, high - 0.18), (0.10, y, high - 0.06), 0.008, metal)
     for x, z in ((-0.10, high - 0.18), (0.10, high - 0.06)):
-        w.rod((x, -half, z), (x, half, z), 0.009, metal)
+        w.rod_y((x, z), (-half, half), 0.009, metal)
         w.mesh(drape(2 * half - 0.14, 0.48, 0.02, 4), (x + 0.007, 0.0, z - 0.47), w.new_look("towel"))
         w.mesh(drape(2 * half - 0.14, 0.36, 0.02, 4), (x - 0.027, 0.0, z - 0.35), w.look("towel"))
 
@@ -155,7 +155,7 @@ def towel_rolls(w: Workbench) -> None:
     r = 0.062
     for y, z in ((-r, r), (r, r), (0.0, r + 1.732 * r)):
         cloth = w.new_look("towel")
-        w.rod((-0.17, y, z), (0.17, y, z), r, cloth)
+        w.rod_x((y, z), (-0.17, 0.17), r, cloth)
         for i, share in enumerate((0.82, 0.7, 0.48, 0.36)):
             ring = cloth if i % 2 else darker(cloth, 0.55)
             at = (0.0006 * (i + 1), y + 0.006 * (i // 2), z)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.shapes import frustum
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
@@ -22,13 +22,7 @@ def _folded(w: Workbench, x: float, y: float, z: float, room: float) -> None:
         if room < thick + 0.03:
             return
         material = w.choice(("towel", "linen", "bright"))
-        w.box(
-            (x - 0.14, x + 0.14),
-            (y - 0.5 * wide, y + 0.5 * wide),
-            (z, z + thick - 0.004),
-            w.new_look(material),
-            solid=False,
-        )
+        w.box(around(x, 0.14), around(y, 0.5 * wide), (z, z + thick - 0.004), w.new_look(material), solid=False)
         z, room = z + thick, room - thick
 
 
@@ -36,14 +30,14 @@ def _bottle(w: Workbench, x: float, y: float, z: float) -> None:
     """Adds a bottle of detergent."""
     high, look = w.choice((0.19, 0.22, 0.25)), w.new_look("plastic")
     w.mesh(frustum((0.07, 0.11), (0.05, 0.05), high), (x, y, z), look, solid=False)
-    w.box((x - 0.02, x + 0.02), (y - 0.02, y + 0.02), (z + high, z + high + 0.03), w.new_look("plastic"), solid=False)
+    w.box(around(x, 0.02), around(y, 0.02), (z + high, z + high + 0.03), w.new_look("plastic"), solid=False)
 
 
 def _carton(w: Workbench, x: float, y: float, z: float) -> None:
     """Adds a carton of washing powder."""
     high = w.length(0.17, 0.24)
-    w.box((x - 0.05, x + 0.05), (y - 0.08, y + 0.08), (z, z + high), w.new_look("bright"), solid=False)
-    w.box((x + 0.05, x + 0.052), (y - 0.06, y + 0.06), (z + 0.3 * high, z + 0.7 * high), w.look("paper"), solid=False)
+    w.box(around(x, 0.05), around(y, 0.08), (z, z + high), w.new_look("bright"), solid=False)
+    w.box((x + 0.05, x + 0.052), around(y, 0.06), (z + 0.3 * high, z + 0.7 * high), w.look("paper"), solid=False)
 
 
 def _basket(w: Workbench, x: float, y: float, z: float, wide: float, high: float) -> None:
@@ -56,7 +50,7 @@ def _shoe_boxes(w: Workbench, x: float, y: float, z: float, room: float) -> None
     """Adds one to three shoe boxes on top of each other."""
     for _ in range(min(w.whole(1, 3), int(room / 0.13))):
         look = w.new_look(w.choice(("cardboard", "bright", "paper")))
-        w.box((x - 0.16, x + 0.15), (y - 0.10, y + 0.10), (z, z + 0.115), look, solid=False)
+        w.box((x - 0.16, x + 0.15), around(y, 0.10), (z, z + 0.115), look, solid=False)
         z += 0.12
 
 
@@ -99,20 +93,20 @@ def _side_boards(w: Workbench, x: Range, y: Range, levels: list[float], height: 
     for edge in (y[0], y[1] - 0.02):
         w.box(x, (edge, edge + 0.02), (0.0, height), look)
     for z in levels:
-        w.box(x, (y[0] + 0.02, y[1] - 0.02), (z, z + 0.02), look)
+        w.box(x, inset(y, 0.02), (z, z + 0.02), look)
 
 
 def _wire_shelf(w: Workbench, *, linen: bool) -> None:
     """Builds four boards between round posts, as in a storeroom."""
     width, depth, height = w.width(0.70, 0.90), w.depth(0.36, 0.42), w.height(1.55, 1.75)
     metal, x, y = w.look("metal"), *parts.footprint(depth, width)
-    w.legs((x[0] + 0.013, x[1] - 0.013), (y[0] + 0.013, y[1] - 0.013), (0.0, height), 0.026, metal, round_=True)
+    w.legs(inset(x, 0.013), inset(y, 0.013), (0.0, height), 0.026, metal, round_=True)
     step = (height - 0.16) / 3
     for i in range(4):
         z = 0.12 + i * step
-        w.box((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.01), (z, z + 0.02), metal)
+        w.box(inset(x, 0.01), inset(y, 0.01), (z, z + 0.02), metal)
         if i < 3:
-            _stock(w, 0.0, (y[0] + 0.04, y[1] - 0.04), z + 0.02, step - 0.04, linen=linen)
+            _stock(w, 0.0, inset(y, 0.04), z + 0.02, step - 0.04, linen=linen)
 
 
 def wire_shelf_laundry(w: Workbench) -> None:
@@ -131,13 +125,13 @@ def hamper_tower(w: Workbench) -> None:
     look, x, y = parts.wood_look(w), *parts.footprint(depth, width)
     parts.open_case(w, x, y, (0.0, height), 0.02, look)
     for z, room in ((0.74, 0.36), (1.14, height - 1.2)):
-        w.box((x[0] + 0.012, x[1]), (y[0] + 0.02, y[1] - 0.02), (z, z + 0.02), look)
-        _stock(w, 0.0, (y[0] + 0.04, y[1] - 0.04), z + 0.02, room, linen=False)
+        w.box((x[0] + 0.012, x[1]), inset(y, 0.02), (z, z + 0.02), look)
+        _stock(w, 0.0, inset(y, 0.04), z + 0.02, room, linen=False)
     for side in BOTH_SIDES:
         span = parts.on_side(side, 0.01, 0.5 * width - 0.025)
         w.box((x[1] - 0.03, x[1] - 0.01), span, (0.05, 0.70), w.look("wicker"), tilt=0.05)
         w.box(
-            (x[1] + 0.0, x[1] + 0.015), (sum(span) / 2 - 0.06, sum(span) / 2 + 0.06), (0.58, 0.62), w.look("dark"),
+            (x[1] + 0.0, x[1] + 0.015), around(sum(span) / 2, 0.06), (0.58, 0.62), w.look("dark"),
             solid=False,
         )  # fmt: skip
 
@@ -147,16 +141,14 @@ def walk_in_case(w: Workbench) -> None:
     width, depth, height = w.width(0.75, 1.00), w.depth(0.40, 0.46), w.height(1.75, 2.00)
     look, x, y = parts.wood_look(w), *parts.footprint(depth, width)
     parts.open_case(w, x, y, (0.0, height), 0.02, look)
-    w.box((x[0] + 0.012, x[1] - parts.FRONT_M), (y[0] + 0.02, y[1] - 0.02), (0.02, 0.62), look)
-    parts.plain_drawers(
-        w, x[1] - parts.FRONT_M, (y[0] + 0.02, y[1] - 0.02), (0.03, 0.61), 3, 1, look, w.look("metal"), "bar"
-    )
+    w.box(inset(x, 0.012, parts.FRONT_M), inset(y, 0.02), (0.02, 0.62), look)
+    parts.plain_drawers(w, x[1] - parts.FRONT_M, inset(y, 0.02), (0.03, 0.61), 3, 1, look, w.look("metal"), "bar")
     step = (height - 0.64) / 3
     for i in range(3):
         z = 0.62 + i * step
         if i:
-            w.box((x[0] + 0.012, x[1]), (y[0] + 0.02, y[1] - 0.02), (z, z + 0.02), look)
-        _stock(w, 0.0, (y[0] + 0.04, y[1] - 0.04), z + (0.02 if i else 0.0), step - 0.05, linen=True)
+            w.box((x[0] + 0.012, x[1]), inset(y, 0.02), (z, z + 0.02), look)
+        _stock(w, 0.0, inset(y, 0.04), z + (0.02 if i else 0.0), step - 0.05, linen=True)
 
 
 def _slatted_shelf(w: Workbench, *, linen: bool) -> None:
@@ -165,18 +157,18 @@ def _slatted_shelf(w: Workbench, *, linen: bool) -> None:
     wood, iron, x, y = w.look("wood"), w.look("iron"), *parts.footprint(depth, width)
     for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.02)
-        for front in (x[0] + 0.02, x[1] - 0.02):
-            w.box((front - 0.02, front + 0.02), (edge - 0.02, edge + 0.02), (0.0, height), wood)
+        for front in inset(x, 0.02):
+            w.box(around(front, 0.02), around(edge, 0.02), (0.0, height), wood)
     step = (height - 0.10) / 3
     for i in range(4):
         z = 0.08 + i * step - (0.02 if i == 3 else 0.0)
-        w.box((x[0] + 0.02, x[1] - 0.02), (-0.015, 0.015), (z - 0.02, z), wood, solid=False)
+        w.box(inset(x, 0.02), (-0.015, 0.015), (z - 0.02, z), wood, solid=False)
         for n in range(3):
             front = x[0] + 0.005 + n * (depth - 0.01) / 3
-            w.box((front, front + (depth - 0.01) / 3 - 0.025), (y[0] + 0.01, y[1] - 0.01), (z, z + 0.022), wood)
+            w.box((front, front + (depth - 0.01) / 3 - 0.025), inset(y, 0.01), (z, z + 0.022), wood)
         if i < 3:
-            _stock(w, 0.0, (y[0] + 0.06, y[1] - 0.06), z + 0.022, step - 0.04, linen=linen)
-    for a, b in ((y[0] + 0.03, y[1] - 0.03), (y[1] - 0.03, y[0] + 0.03)):
+            _stock(w, 0.0, inset(y, 0.06), z + 0.022, step - 0.04, linen=linen)
+    for a, b in (inset(y, 0.03), (y[1] - 0.03, y[0] + 0.03)):
         w.bar((x[0], a, 0.15), (x[0], b, height - 0.1), 0.02, 0.004, iron, solid=False)
 
 
@@ -195,14 +187,14 @@ def drying_cupboard(w: Workbench) -> None:
     width, depth, height = w.width(0.70, 0.90), w.depth(0.38, 0.44), w.height(1.45, 1.65)
     look, metal, x, y = w.look("lacquer"), w.look("chrome"), *parts.footprint(depth, width)
     w.box((x[0], x[1] - parts.FRONT_M), y, (0.06, 0.86), look)
-    w.box((x[0] + 0.03, x[1] - 0.06), (y[0] + 0.02, y[1] - 0.02), (0.0, 0.06), w.look("dark"))
+    w.box(inset(x, 0.03, 0.06), inset(y, 0.02), (0.0, 0.06), w.look("dark"))
     parts.plain_doors(w, x[1] - parts.FRONT_M, y, (0.07, 0.85), 2, look, w.look("metal"), "knob")
-    _stock(w, 0.0, (y[0] + 0.05, y[1] - 0.05), 0.86, 0.3, linen=False)
+    _stock(w, 0.0, inset(y, 0.05), 0.86, 0.3, linen=False)
     for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.015)
-        w.box((x[0], x[0] + 0.03), (edge - 0.015, edge + 0.015), (0.86, height), look)
+        w.box((x[0], x[0] + 0.03), around(edge, 0.015), (0.86, height), look)
     w.box((x[0], x[0] + 0.30), y, (height, height + 0.025), look)
-    w.rod((x[0] + 0.015, y[0] + 0.02, height - 0.12), (x[0] + 0.015, y[1] - 0.02, height - 0.12), 0.01, metal)
+    w.rod_y((x[0] + 0.015, height - 0.12), inset(y, 0.02), 0.01, metal)
     _folded(w, x[0] + 0.15, -0.2 * width, height + 0.025, 0.3)
     _basket(w, x[0] + 0.15, 0.2 * width, height + 0.025, 0.3, 0.16)
 
@@ -217,9 +209,9 @@ def shoe_bench(w: Workbench) -> None:
         for n in range(3):
             if w.chance(0.7):
                 _shoes(w, 0.0, (n - 1) * 0.3 * width, z)
-        w.box((x[0], x[0] + 0.012), (y[0] + 0.02, y[1] - 0.02), (z, z + room), wood, solid=False)
+        w.box((x[0], x[0] + 0.012), inset(y, 0.02), (z, z + room), wood, solid=False)
     for z, room in ((0.46, 0.47), (0.97, height - 1.01)):
-        _stock(w, 0.0, (y[0] + 0.04, y[1] - 0.04), z, room, linen=True)
+        _stock(w, 0.0, inset(y, 0.04), z, room, linen=True)
 
 
 def _hung(w: Workbench, x: float, z: float, y: Range, long: float) -> None:
@@ -232,7 +224,7 @@ def _hung(w: Workbench, x: float, z: float, y: Range, long: float) -> None:
         at = y[0] + (i + 0.5) * pitch
         for side in BOTH_SIDES:
             w.box(
-                (x + 0.012 * side - 0.005, x + 0.012 * side + 0.005), (at - 0.5 * wide, at + 0.5 * wide),
+                around(x + 0.012 * side, 0.005), around(at, 0.5 * wide),
                 (z - (high if side > 0 else 0.7 * high), z + 0.012), cloth, solid=False, tilt=-0.03 * side,
             )  # fmt: skip
 
@@ -295,7 +287,7 @@ def airer_frame(w: Workbench) -> None:
         w.bar((-0.20, y, high - 0.05), (0.20, y, high - 0.05), 0.020, 0.020, iron)
     for x in (-0.20, 0.0, 0.20):
         w.bar((x, -0.5 * width, high - 0.05), (x, 0.5 * width, high - 0.05), 0.018, 0.018, iron)
-    w.box((-0.18, 0.18), (-0.5 * width, 0.5 * width), (0.22, 0.24), w.look("wood"))
+    w.box((-0.18, 0.18), centred(width), (0.22, 0.24), w.look("wood"))
     _basket(w, 0.0, 0.2 * width, 0.24, 0.36, 0.2)
     _hung(w, -0.20, high - 0.05, (-0.42 * width, 0.42 * width), 0.8)
     _hung(w, 0.20, high - 0.05, (-0.42 * width, 0.42 * width), 0.6)

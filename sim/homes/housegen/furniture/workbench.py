@@ -126,6 +126,20 @@ class Workbench:
         middle, half, rotation = _between(a, b)
         self.add("capsule" if round_ends else "cylinder", (radius, half), middle, rotation, look, solid=solid)
 
+    def rod_x(
+        self, yz: tuple[float, float], x: Range, radius: float, look: Look, *, solid: bool = True,
+        round_ends: bool = False,
+    ) -> None:  # fmt: skip
+        """Adds a cylinder (or a capsule) along x."""
+        self.rod((x[0], *yz), (x[1], *yz), radius, look, solid=solid, round_ends=round_ends)
+
+    def rod_y(
+        self, xz: tuple[float, float], y: Range, radius: float, look: Look, *, solid: bool = True,
+        round_ends: bool = False,
+    ) -> None:  # fmt: skip
+        """Adds a cylinder (or a capsule) along y."""
+        self.rod((xz[0], y[0], xz[1]), (xz[0], y[1], xz[1]), radius, look, solid=solid, round_ends=round_ends)
+
     def bar(self, a: Point, b: Point, wide: float, thick: float, look: Look, *, solid: bool = True) -> None:
         """Adds a box from a to b, `wide` as nearly along y as possible and `thick` across; full lengths."""
         middle, half, rotation = _between(a, b)

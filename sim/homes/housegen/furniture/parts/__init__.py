@@ -11,11 +11,11 @@ from sim.homes.housegen.furniture.parts.fronts import (
 )
 from sim.homes.housegen.furniture.parts.looks import darker, tinted_glass, wood_look
 from sim.homes.housegen.furniture.parts.plumbing import basin, mixer_tap
-from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, footprint, on_side
+from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, around, centred, footprint, inset, on_side, polar
 from sim.homes.housegen.furniture.parts.textiles import duvet, throw_cushions
 
 __all__ = [
-    "BOTH_SIDES", "FRONT_M", "GAP_M", "SHADOW_M", "PlainHandleKind", "basin", "case", "darker", "duvet", "footprint",
-    "mixer_tap", "on_side", "open_case", "plain_doors", "plain_drawers", "round_top", "slab", "throw_cushions",
-    "tinted_glass", "wood_look", "worktop", "worktop_fittings",
+    "BOTH_SIDES", "FRONT_M", "GAP_M", "SHADOW_M", "PlainHandleKind", "around", "basin", "case", "centred", "darker",
+    "duvet", "footprint", "inset", "mixer_tap", "on_side", "open_case", "plain_doors", "plain_drawers", "polar",
+    "round_top", "slab", "throw_cushions", "tinted_glass", "wood_look", "worktop", "worktop_fittings",
 ]  # fmt: skip

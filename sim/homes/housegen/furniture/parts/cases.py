@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts.looks import glass_edge, tinted_glass
-from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, footprint
+from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, around, footprint, inset
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 GLASS_EDGE_M = 0.008
@@ -26,9 +26,9 @@ def slab(w: Workbench, depth: float, width: float, z: Range, look: Look) -> tupl
             a, b = sorted((end * 0.5 * depth, end * (0.5 * depth - GLASS_EDGE_M)))
             w.box((a, b), y, rim, glass_edge(look), solid=False)
             a, b = sorted((end * 0.5 * width, end * (0.5 * width - GLASS_EDGE_M)))
-            w.box((x[0] + GLASS_EDGE_M, x[1] - GLASS_EDGE_M), (a, b), rim, glass_edge(look), solid=False)
+            w.box(inset(x, GLASS_EDGE_M), (a, b), rim, glass_edge(look), solid=False)
     w.box(x, y, z, look)
-    w.top((x[0] + 0.05, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), z[1])
+    w.top(inset(x, 0.05), inset(y, 0.05), z[1])
     return x, y
 
 
@@ -48,8 +48,8 @@ def case(w: Workbench, depth: float, width: float, z: Range, look: Look, *, foot
     x, y = footprint(depth, width)
     w.box(x, y, z, look)
     if foot:
-        w.box((x[0] + 0.02, x[1] - 0.05), (y[0] + 0.02, y[1] - 0.02), (z[0] - foot, z[0]), w.look("dark"))
-    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), z[1])
+        w.box(inset(x, 0.02, 0.05), inset(y, 0.02), (z[0] - foot, z[0]), w.look("dark"))
+    w.top(inset(x, 0.03), inset(y, 0.05), z[1])
     return x[1], y
 
 
@@ -58,8 +58,8 @@ def open_case(w: Workbench, x: Range, y: Range, z: Range, board: float, look: Lo
     for edge in (y[0], y[1] - board):
         w.box(x, (edge, edge + board), z, look)
     for low in (z[0], z[1] - board):
-        w.box(x, (y[0] + board, y[1] - board), (low, low + board), look)
-    w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (z[0] + board, z[1] - board), look)
+        w.box(x, inset(y, board), (low, low + board), look)
+    w.box((x[0], x[0] + 0.012), inset(y, board), inset(z, board), look)
 
 
 def worktop(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: tuple[Range, Range] | None) -> None:
@@ -94,14 +94,14 @@ def worktop_fittings(w: Workbench, y: Range, z: float) -> tuple[tuple[Range, Ran
         if with_hob and y[0] + 0.3 < low < sink_y < high:
             sink_y = low
         w.put(w.make("sink", use="inset"), (0.0, sink_y, z - 0.18))
-        hole = ((-0.20, 0.20), (sink_y - 0.24, sink_y + 0.24))
-        taken.append((sink_y - 0.30, sink_y + 0.30))
+        hole = ((-0.20, 0.20), around(sink_y, 0.24))
+        taken.append(around(sink_y, 0.30))
     if with_hob:
-        places = [p for p in (y[0] + 0.36, y[1] - 0.36) if sink_y is None or abs(p - sink_y) > _HOB_APART - 0.01]
+        places = [p for p in inset(y, 0.36) if sink_y is None or abs(p - sink_y) > _HOB_APART - 0.01]
         if places:
             place = w.choice(places)
             w.put(w.make("appliances", use="hob"), (0.0, place, z))
-            taken.append((place - 0.32, place + 0.32))
+            taken.append(around(place, 0.32))
     return hole, _free_ranges(y, taken)
 
 

@@ -16,6 +16,7 @@ from sim.homes.housegen.furniture.parts.palette_mesh import (
     WHITE,
     PaletteMesh,
 )
+from sim.homes.housegen.furniture.parts.spans import around
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 _STEP_M = 0.0006
@@ -119,14 +120,14 @@ class Page:
         cos, sin = math.cos(self._turn), math.sin(self._turn)
         cx, cy = self._middle[0] + dx * cos - dy * sin, self._middle[1] + dx * sin + dy * cos
         cz = self._middle[2] + dz
-        self._mesh.box((cx - 0.0004, cx + 0.0004), (cy - half_y, cy + half_y), (cz - half_z, cz + half_z), column,
+        self._mesh.box(around(cx, 0.0004), around(cy, half_y), around(cz, half_z), column,
                        tilt=self._tilt, turn=self._turn)  # fmt: skip
 
     def disc(self, column: int, across: float, up: float, radius: float) -> None:
         """Adds a round shape of two crossed rectangles; `radius` is a share of the height."""
         wide = radius * (self._z[1] - self._z[0]) / (self._y[1] - self._y[0])
         for a, b in ((1.0, 0.6), (0.6, 1.0)):
-            self.box(column, (across - a * wide, across + a * wide), (up - b * radius, up + b * radius))
+            self.box(column, around(across, a * wide), around(up, b * radius))
 
     def put(self, w: Workbench, *, emission: float = 0.35) -> None:
         """Adds the picture to the item as one geom that emits this share of its colours."""

@@ -10,6 +10,7 @@ from typing import Literal
 
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts.looks import darker
+from sim.homes.housegen.furniture.parts.spans import around, inset
 from sim.homes.housegen.furniture.workbench import Point, Range, Workbench
 
 FRONT_M = 0.018
@@ -39,13 +40,13 @@ def plain_doors(
     if count > 1:
         _plain_joints(w, x, y, z, look)
     tall = z[1] - z[0]
-    inset = min(0.22, 0.35 * tall)
-    grip = z[0] + inset if low_handles else z[1] - inset
+    from_edge = min(0.22, 0.35 * tall)
+    grip = z[0] + from_edge if low_handles else z[1] - from_edge
     if tall > 1.2:
         grip = z[0] + 0.52 * tall
     for i in range(count):
         left = y[0] + i * pitch
-        w.box((x, x + FRONT_M), (left + GAP_M, left + pitch - GAP_M), (z[0] + GAP_M, z[1] - GAP_M), look, solid=False)
+        w.box((x, x + FRONT_M), (left + GAP_M, left + pitch - GAP_M), inset(z, GAP_M), look, solid=False)
         hand = left + (pitch - 0.045 if i % 2 == 0 and count > 1 else 0.045)
         length = min(0.16, 0.4 * tall)
         _plain_handle(w, handle, (x + FRONT_M, hand, grip), (0.0, length), metal)
@@ -76,7 +77,7 @@ def plain_drawers(
 
 def _plain_joints(w: Workbench, x: float, y: Range, z: Range, look: Look) -> None:
     """Adds the dark layer behind plain fronts."""
-    y, z = (y[0] + GAP_M, y[1] - GAP_M), (z[0] + GAP_M, z[1] - GAP_M)
+    y, z = inset(y, GAP_M), inset(z, GAP_M)
     w.box((x, x + SHADOW_M), y, z, darker(look), solid=False)
 
 
@@ -85,7 +86,7 @@ def _plain_handle(w: Workbench, kind: PlainHandleKind, at: Point, lengths: tuple
     x, y, z = at
     if kind == "bar":
         dy, dz = (0.5 * length + 0.006 for length in lengths)
-        w.box((x, x + 0.024), (y - dy, y + dy), (z - dz, z + dz), look, solid=False)
+        w.box((x, x + 0.024), around(y, dy), around(z, dz), look, solid=False)
     elif kind == "knob":
         w.ball((x + 0.012, y, z), 0.016, look, solid=False)
     elif kind == "cup":
