@@ -11,7 +11,7 @@ import math
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, polar
-from sim.homes.housegen.furniture.shapes import Ring, arc_wall, chamfered_box, loft
+from sim.homes.housegen.furniture.shapes import Ring, arc_wall, chamfered_box, loft, turned
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
@@ -115,8 +115,8 @@ def tub(w: Workbench) -> None:
     r, cloth = 0.5 * width, w.look("fabric")
     w.cylinder((0.0, 0.0), (0.05, seat - 0.10), r - 0.01, cloth)
     w.cylinder((0.0, 0.0), (0.0, 0.06), r - 0.08, w.look("dark"))
-    cushion = [Ring(-0.12, r - 0.11, r - 0.11), Ring(-0.03, r - 0.10, r - 0.10), Ring(0.0, r - 0.14, r - 0.14)]
-    w.mesh(loft(cushion, 16, hull=True), (0.02, 0.0, seat), cloth)
+    cushion = [(-0.12, r - 0.11), (-0.03, r - 0.10), (0.0, r - 0.14)]
+    w.mesh(turned(cushion, 16, hull=True), (0.02, 0.0, seat), cloth)
     angles = [math.pi + (i - 8) * 0.275 for i in range(17)]
     tops = [height - 0.15 * (abs(i - 8) / 8) ** 2 for i in range(17)]
     w.mesh(arc_wall(r, 0.10, 0.10, angles, tops), (0.0, 0.0, 0.0), cloth, solid=False)

@@ -9,7 +9,7 @@ import itertools
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.shapes import Ring, loft, pillow, puffed
+from sim.homes.housegen.furniture.shapes import pillow, puffed, turned
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
@@ -52,7 +52,7 @@ def round_cushion(w: Workbench) -> None:
     r = 0.5 * w.choice((0.38, 0.42))
     tilt = 1.25
     w.mesh(
-        loft([Ring(-0.055, 0.6 * r, 0.6 * r), Ring(0.0, r, r), Ring(0.055, 0.6 * r, 0.6 * r)], 16, hull=True),
+        turned([(-0.055, 0.6 * r), (0.0, r), (0.055, 0.6 * r)], 16, hull=True),
         (0.0, 0.0, r),
         w.look("bright"),
         tilt=tilt,

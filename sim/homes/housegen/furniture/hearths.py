@@ -14,7 +14,7 @@ from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset, polar
 from sim.homes.housegen.furniture.parts.leaves import Body, joined, tube
-from sim.homes.housegen.furniture.shapes import Ring, loft
+from sim.homes.housegen.furniture.shapes import turned
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 _SHARES = ((0.0, 0.55, 0.0), (0.28, 1.0, 0.25), (0.62, 0.6, -0.3), (1.0, 0.0, 0.35))
@@ -154,26 +154,9 @@ def suspended(w: Workbench) -> None:
     """Builds a conical metal hearth that hangs from its flue over a round stone."""
     iron, r, top = w.look("iron"), w.length(0.42, 0.52), w.height(2.35, 2.50)
     w.cylinder((0.0, 0.0), (0.0, 0.05), r + 0.12, w.look("stone"))
-    w.mesh(
-        loft(
-            [
-                Ring(0.28, 0.5 * r, 0.5 * r),
-                Ring(0.40, r, r),
-                Ring(0.46, r, r),
-                Ring(0.46, 0.9 * r, 0.9 * r),
-                Ring(0.36, 0.5 * r, 0.5 * r),
-            ],
-            16,
-        ),
-        (0.0, 0.0, 0.0),
-        iron,
-    )
+    w.mesh(turned([(0.28, 0.5 * r), (0.40, r), (0.46, r), (0.46, 0.9 * r), (0.36, 0.5 * r)], 16), (0.0, 0.0, 0.0), iron)
     w.cylinder((0.0, 0.0), (0.04, 0.30), 0.10, iron)
-    w.mesh(
-        loft([Ring(0.86, 0.95 * r, 0.95 * r), Ring(1.30, 0.12, 0.12), Ring(1.32, 0.12, 0.12)], 16, hull=True),
-        (0.0, 0.0, 0.0),
-        iron,
-    )
+    w.mesh(turned([(0.86, 0.95 * r), (1.30, 0.12), (1.32, 0.12)], 16, hull=True), (0.0, 0.0, 0.0), iron)
     w.cylinder((0.0, 0.0), (1.30, top), 0.09, iron)
     for i in range(3):
         a = math.tau * i / 3 + 0.5

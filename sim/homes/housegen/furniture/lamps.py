@@ -10,7 +10,7 @@ import math
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.parts import around, polar
-from sim.homes.housegen.furniture.shapes import Ring, loft
+from sim.homes.housegen.furniture.shapes import Ring, loft, turned
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
@@ -20,11 +20,7 @@ def pendant(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (-0.03, 0.0), 0.05, w.look("iron"), solid=False)
     w.cylinder((0.0, 0.0), (-drop, -0.02), 0.005, w.look("dark"), solid=False)
     w.mesh(
-        loft(
-            [Ring(-drop - 0.20, r, r), Ring(-drop - 0.02, 0.35 * r, 0.35 * r), Ring(-drop + 0.02, 0.12 * r, 0.12 * r)],
-            16,
-            hull=True,
-        ),
+        turned([(-drop - 0.20, r), (-drop - 0.02, 0.35 * r), (-drop + 0.02, 0.12 * r)], 16, hull=True),
         (0.0, 0.0, 0.0),
         w.look("shade"),
         solid=False,
@@ -53,9 +49,7 @@ def floor_lamp(w: Workbench) -> None:
     tall, metal, r = w.length(1.45, 1.70), w.look("metal"), 0.5 * w.length(0.32, 0.44)
     w.cylinder((0.0, 0.0), (0.0, 0.025), 0.15, metal)
     w.cylinder((0.0, 0.0), (0.02, tall - 0.05), 0.012, metal)
-    w.mesh(
-        loft([Ring(tall - 0.28, r, r), Ring(tall, 0.75 * r, 0.75 * r)], 16, hull=True), (0.0, 0.0, 0.0), w.look("shade")
-    )
+    w.mesh(turned([(tall - 0.28, r), (tall, 0.75 * r)], 16, hull=True), (0.0, 0.0, 0.0), w.look("shade"))
     w.cylinder((0.0, 0.0), (tall - 0.285, tall - 0.27), 0.8 * r, w.look("glow"), solid=False)
 
 
@@ -73,22 +67,11 @@ def table_lamp(w: Workbench) -> None:
     """Builds a table lamp with a ceramic body and a conical shade."""
     tall, r, body = w.length(0.38, 0.56), 0.5 * w.length(0.22, 0.32), w.look("pot")
     w.mesh(
-        loft(
-            [
-                Ring(0.0, 0.06, 0.06),
-                Ring(0.08, 0.085, 0.085),
-                Ring(0.45 * tall, 0.045, 0.045),
-                Ring(0.6 * tall, 0.015, 0.015),
-            ],
-            12,
-            hull=True,
-        ),
+        turned([(0.0, 0.06), (0.08, 0.085), (0.45 * tall, 0.045), (0.6 * tall, 0.015)], 12, hull=True),
         (0.0, 0.0, 0.0),
         body,
     )
-    w.mesh(
-        loft([Ring(0.55 * tall, r, r), Ring(tall, 0.6 * r, 0.6 * r)], 14, hull=True), (0.0, 0.0, 0.0), w.look("shade")
-    )
+    w.mesh(turned([(0.55 * tall, r), (tall, 0.6 * r)], 14, hull=True), (0.0, 0.0, 0.0), w.look("shade"))
 
 
 def mushroom_lamp(w: Workbench) -> None:
@@ -97,16 +80,7 @@ def mushroom_lamp(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (0.0, 0.65 * tall), 0.05, w.look("brass"))
     w.cylinder((0.0, 0.0), (0.0, 0.015), 0.09, w.look("brass"))
     w.mesh(
-        loft(
-            [
-                Ring(0.55 * tall, 0.16, 0.16),
-                Ring(0.75 * tall, 0.15, 0.15),
-                Ring(0.92 * tall, 0.10, 0.10),
-                Ring(tall, 0.03, 0.03),
-            ],
-            14,
-            hull=True,
-        ),
+        turned([(0.55 * tall, 0.16), (0.75 * tall, 0.15), (0.92 * tall, 0.10), (tall, 0.03)], 14, hull=True),
         (0.0, 0.0, 0.0),
         look,
     )
@@ -145,16 +119,7 @@ def arc_lamp(w: Workbench) -> None:
     for a, b in itertools.pairwise(arc):
         w.rod((a[0], 0.0, a[1]), (b[0], 0.0, b[1]), 0.012, metal, round_ends=True)
     w.mesh(
-        loft(
-            [
-                Ring(-0.12, r, r),
-                Ring(-0.04, 0.92 * r, 0.92 * r),
-                Ring(0.03, 0.5 * r, 0.5 * r),
-                Ring(0.05, 0.1 * r, 0.1 * r),
-            ],
-            14,
-            hull=True,
-        ),
+        turned([(-0.12, r), (-0.04, 0.92 * r), (0.03, 0.5 * r), (0.05, 0.1 * r)], 14, hull=True),
         (0.52, 0.0, 1.55),
         w.look("shade"),
     )
@@ -168,10 +133,7 @@ def reading_lamp(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (0.015, high), 0.010, metal)
     w.rod((0.0, 0.0, high - 0.01), (0.28, 0.0, high + 0.14), 0.009, metal, round_ends=True)
     w.mesh(
-        loft([Ring(-0.14, 0.085, 0.085), Ring(0.0, 0.03, 0.03), Ring(0.03, 0.025, 0.025)], 14, hull=True),
-        (0.28, 0.0, high + 0.13),
-        metal,
-        tilt=-0.35,
+        turned([(-0.14, 0.085), (0.0, 0.03), (0.03, 0.025)], 14, hull=True), (0.28, 0.0, high + 0.13), metal, tilt=-0.35
     )
     w.cylinder((0.325, 0.0), around(high, 0.005), 0.06, w.look("glow"), solid=False)
 
@@ -182,19 +144,14 @@ def desk_lamp(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (0.0, 0.02), 0.08, metal)
     w.rod((0.0, 0.0, 0.015), (-0.10, 0.0, 0.24), 0.008, metal, round_ends=True)
     w.rod((-0.10, 0.0, 0.24), (0.10, 0.0, 0.42), 0.008, metal, round_ends=True)
-    w.mesh(
-        loft([Ring(-0.10, 0.075, 0.075), Ring(0.0, 0.03, 0.03), Ring(0.02, 0.025, 0.025)], 14, hull=True),
-        (0.10, 0.0, 0.42),
-        metal,
-        tilt=-0.3,
-    )
+    w.mesh(turned([(-0.10, 0.075), (0.0, 0.03), (0.02, 0.025)], 14, hull=True), (0.10, 0.0, 0.42), metal, tilt=-0.3)
     w.cylinder((0.128, 0.0), (0.322, 0.330), 0.05, w.look("glow"), solid=False)
 
 
 def globe_table(w: Workbench) -> None:
     """Builds a table lamp: a glowing ball on a ring of wood."""
     r = w.length(0.10, 0.14)
-    w.mesh(loft([Ring(0.0, 0.09, 0.09), Ring(0.05, 0.07, 0.07)], 14, hull=True), (0.0, 0.0, 0.0), w.look("wood"))
+    w.mesh(turned([(0.0, 0.09), (0.05, 0.07)], 14, hull=True), (0.0, 0.0, 0.0), w.look("wood"))
     w.ball((0.0, 0.0, 0.045 + r), r, w.look("glow"))
 
 
@@ -222,12 +179,7 @@ def swing_sconce(w: Workbench) -> None:
     w.rod_x((0.0, 0.12), (0.0, 0.02), 0.05, brass, solid=False)
     w.rod_x((0.0, 0.12), (0.02, 0.24), 0.008, brass, solid=False, round_ends=True)
     w.cylinder((0.24, 0.0), (0.10, 0.16), 0.010, brass, solid=False)
-    w.mesh(
-        loft([Ring(0.0, 0.10, 0.10), Ring(0.17, 0.065, 0.065)], 14, hull=True),
-        (0.24, 0.0, 0.05),
-        w.look("shade"),
-        solid=False,
-    )
+    w.mesh(turned([(0.0, 0.10), (0.17, 0.065)], 14, hull=True), (0.24, 0.0, 0.05), w.look("shade"), solid=False)
     w.cylinder((0.24, 0.0), (0.044, 0.052), 0.08, w.look("glow"), solid=False)
 
 

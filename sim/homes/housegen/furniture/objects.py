@@ -11,7 +11,7 @@ from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, polar
 from sim.homes.housegen.furniture.parts.flat_pictures import Page, photograph
 from sim.homes.housegen.furniture.parts.leaves import Body, arch, blade, blossom, joined, tube
-from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, hoop, loft
+from sim.homes.housegen.furniture.shapes import chamfered_box, hoop, turned
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
@@ -28,15 +28,7 @@ def vase(w: Workbench) -> None:
     """Builds a vase with a few flowers."""
     r, high = w.length(0.05, 0.08), w.length(0.16, 0.26)
     w.mesh(
-        loft(
-            [
-                Ring(0.0, 0.6 * r, 0.6 * r),
-                Ring(0.4 * high, r, r),
-                Ring(0.8 * high, 0.45 * r, 0.45 * r),
-                Ring(high, 0.6 * r, 0.6 * r),
-            ],
-            12,
-        ),
+        turned([(0.0, 0.6 * r), (0.4 * high, r), (0.8 * high, 0.45 * r), (high, 0.6 * r)], 12),
         (0.0, 0.0, 0.0),
         w.look("pot"),
     )
@@ -63,17 +55,7 @@ def fruit_bowl(w: Workbench) -> None:
     """Builds a shallow bowl of fruit."""
     r = w.length(0.12, 0.16)
     w.mesh(
-        loft(
-            [
-                Ring(0.0, 0.4 * r, 0.4 * r),
-                Ring(0.07, r, r),
-                Ring(0.07, 0.92 * r, 0.92 * r),
-                Ring(0.025, 0.4 * r, 0.4 * r),
-            ],
-            14,
-        ),
-        (0.0, 0.0, 0.0),
-        w.look("ceramic"),
+        turned([(0.0, 0.4 * r), (0.07, r), (0.07, 0.92 * r), (0.025, 0.4 * r)], 14), (0.0, 0.0, 0.0), w.look("ceramic")
     )
     for i in range(4):
         a = math.tau * i / 3
@@ -85,15 +67,7 @@ def kettle(w: Workbench) -> None:
     """Builds a kettle on its base."""
     look, dark = w.look("steel") if w.chance(0.5) else w.look("appliance"), w.look("dark")
     w.cylinder((0.0, 0.0), (0.0, 0.02), 0.085, dark)
-    w.mesh(
-        loft(
-            [Ring(0.02, 0.08, 0.08), Ring(0.06, 0.085, 0.085), Ring(0.19, 0.06, 0.06), Ring(0.21, 0.03, 0.03)],
-            14,
-            hull=True,
-        ),
-        (0.0, 0.0, 0.0),
-        look,
-    )
+    w.mesh(turned([(0.02, 0.08), (0.06, 0.085), (0.19, 0.06), (0.21, 0.03)], 14, hull=True), (0.0, 0.0, 0.0), look)
     w.rod((0.06, 0.0, 0.12), (0.11, 0.0, 0.18), 0.014, look, solid=False)
     w.rod((-0.055, 0.0, 0.20), (-0.11, 0.0, 0.18), 0.012, dark, solid=False, round_ends=True)
     w.rod((-0.11, 0.0, 0.18), (-0.10, 0.0, 0.06), 0.012, dark, solid=False, round_ends=True)
@@ -134,19 +108,8 @@ def basket(w: Workbench) -> None:
 def place_setting(w: Workbench) -> None:
     """Builds a plate, a bowl and a cup."""
     white = w.look("ceramic")
-    w.mesh(
-        loft([Ring(0.0, 0.07, 0.07), Ring(0.02, 0.13, 0.13), Ring(0.02, 0.12, 0.12), Ring(0.006, 0.06, 0.06)], 16),
-        (0.0, 0.0, 0.0),
-        white,
-    )
-    w.mesh(
-        loft(
-            [Ring(0.006, 0.035, 0.035), Ring(0.065, 0.075, 0.075), Ring(0.065, 0.068, 0.068), Ring(0.02, 0.03, 0.03)],
-            14,
-        ),
-        (0.0, 0.0, 0.0),
-        w.look("pot"),
-    )
+    w.mesh(turned([(0.0, 0.07), (0.02, 0.13), (0.02, 0.12), (0.006, 0.06)], 16), (0.0, 0.0, 0.0), white)
+    w.mesh(turned([(0.006, 0.035), (0.065, 0.075), (0.065, 0.068), (0.02, 0.03)], 14), (0.0, 0.0, 0.0), w.look("pot"))
     w.cylinder((0.02, 0.19), (0.0, 0.085), 0.04, w.look("bright"))
     w.cylinder((0.02, 0.23), (0.025, 0.065), 0.006, w.look("bright"), solid=False)
 
@@ -157,10 +120,10 @@ def bottles(w: Workbench) -> None:
     glass = w.new_look("book")
     for y, high in ((-0.10, 0.26), (0.0, 0.30)):
         w.mesh(
-            loft(
+            turned(
                 [
-                    *(Ring(0.015 + z * (high - 0.015), r, r) for z, r in ((0.0, 0.035), (0.52, 0.036), (0.62, 0.031))),
-                    *(Ring(0.015 + z * (high - 0.015), r, r) for z, r in ((0.70, 0.016), (0.75, 0.013), (1.0, 0.013))),
+                    *((0.015 + z * (high - 0.015), r) for z, r in ((0.0, 0.035), (0.52, 0.036), (0.62, 0.031))),
+                    *((0.015 + z * (high - 0.015), r) for z, r in ((0.70, 0.016), (0.75, 0.013), (1.0, 0.013))),
                 ],
                 12,
             ),

@@ -23,7 +23,7 @@ from sim.homes.housegen.furniture.parts.leaves import (
     joined,
     tube,
 )
-from sim.homes.housegen.furniture.shapes import Ring, loft
+from sim.homes.housegen.furniture.shapes import turned
 from sim.homes.housegen.furniture.workbench import Point, Workbench
 
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -35,7 +35,7 @@ _CUT = ((0.0, 0.0), (-0.1, -0.2), (0.03, -0.4), (0.22, -0.46), (0.3, -0.2), (0.4
 
 def _pot(w: Workbench, r: float, high: float) -> None:
     rings = [(0.0, 0.72), (0.85, 0.95), (0.86, 1.0), (0.98, 1.0), (1.0, 0.96)]
-    shape = loft([Ring(z * high, s * r, s * r) for z, s in rings], 14, hull=True)
+    shape = turned([(z * high, s * r) for z, s in rings], 14, hull=True)
     w.mesh(shape, _ORIGIN, w.look("pot"))
     w.cylinder((0.0, 0.0), around(high, 0.004), 0.9 * r, w.look("soil"), solid=False)
 
@@ -155,7 +155,7 @@ def topiary(w: Workbench) -> None:
     """Builds a clipped shrub of two balls in a footed urn."""
     r, ball = w.length(0.15, 0.19), w.length(0.18, 0.24)
     rings = [(0.0, 0.8), (0.04, 0.8), (0.06, 0.5), (0.10, 0.35), (0.17, 0.8), (0.30, 1.0), (0.31, 1.1), (0.33, 1.1)]
-    w.mesh(loft([Ring(z, s * r, s * r) for z, s in rings], 10), _ORIGIN, w.look("pot"))
+    w.mesh(turned([(z, s * r) for z, s in rings], 10), _ORIGIN, w.look("pot"))
     green = w.look("hedge")
     w.cylinder((0.0, 0.0), (0.31, 0.34 + 2.6 * ball), 0.018, w.look("wood"))
     leaves: list[Body] = []

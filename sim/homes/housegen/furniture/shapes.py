@@ -1,4 +1,4 @@
-"""Small procedural meshes: chamfered boxes, lofts, bent strips, foliage; each at most 250 vertices.
+"""Small procedural meshes: chamfered boxes, lofts, bent strips, hanging cloth; each at most 250 vertices.
 
 Vertices are rounded to 0.1 mm, so that the same parameters give the same mesh, the same name and short XML.
 MuJoCo collides a mesh by its convex hull; meshes without faces are also rendered as their hull.
@@ -96,6 +96,11 @@ def loft(rings: Sequence[Ring], segments: int = 12, *, hull: bool = False, loop:
     for i in range(1, segments - 1):
         faces += [(0, i + 1, i), (last, last + i, last + i + 1)]
     return named_mesh("loft", np.vstack(vertices), faces)
+
+
+def turned(profile_m: Sequence[tuple[float, float]], segments: int = 12, *, hull: bool = False) -> MeshShape:
+    """Returns a loft over circles about the z axis, given as (height, radius): a body as from a lathe."""
+    return loft([Ring(z, r, r) for z, r in profile_m], segments, hull=hull)
 
 
 def hoop(radius_m: float, thick_m: float, height_m: float, segments: int = 20) -> MeshShape:

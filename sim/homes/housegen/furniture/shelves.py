@@ -9,7 +9,7 @@ from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
-from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, loft
+from sim.homes.housegen.furniture.shapes import chamfered_box, turned
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 
@@ -129,7 +129,7 @@ def corner_niche(w: Workbench) -> None:
         w.box((0.0, 0.008), (low, high), (z0, z1), look)
         _books(w, (0.008, depth), (low + 0.03, high - 0.10), z0 + 0.018, z1 - z0 - 0.04)
     w.mesh(
-        loft([Ring(0.0, 0.04, 0.04), Ring(0.10, 0.06, 0.06), Ring(0.17, 0.03, 0.03)], 12, hull=True),
+        turned([(0.0, 0.04), (0.10, 0.06), (0.17, 0.03)], 12, hull=True),
         (0.5 * depth, y0 + 0.18 * width, 0.36),
         w.look("pot"),
         solid=False,

@@ -10,7 +10,7 @@ import math
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, polar
-from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, puffed, strip
+from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, puffed, strip, turned
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
@@ -142,10 +142,10 @@ def stump(w: Workbench) -> None:
     w.mass_kg = 12.0
     high, r = w.length(0.42, 0.46), 0.5 * w.length(0.30, 0.36)
     w.mesh(
-        loft(
+        turned(
             [
-                *(Ring(z * high, s * r, s * r) for z, s in ((0.0, 0.97), (0.03, 1.0), (0.25, 0.82), (0.5, 0.7))),
-                *(Ring(z * high, s * r, s * r) for z, s in ((0.75, 0.82), (0.97, 1.0), (1.0, 0.97))),
+                *((z * high, s * r) for z, s in ((0.0, 0.97), (0.03, 1.0), (0.25, 0.82), (0.5, 0.7))),
+                *((z * high, s * r) for z, s in ((0.75, 0.82), (0.97, 1.0), (1.0, 0.97))),
             ],
             20,
         ),
