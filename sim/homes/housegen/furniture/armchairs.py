@@ -5,7 +5,6 @@ Sizes follow Panero & Zelnik, Human Dimension and Interior Space (easy chairs 0.
 
 from __future__ import annotations
 
-import itertools
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
@@ -95,8 +94,7 @@ def rocker(w: Workbench) -> None:
     curve = [(-0.46, 0.10), (-0.28, 0.035), (-0.05, 0.013), (0.18, 0.02), (0.38, 0.07)]
     for side in BOTH_SIDES:
         y = side * (half - 0.02)
-        for a, b in itertools.pairwise(curve):
-            w.rod((a[0], y, a[1]), (b[0], y, b[1]), 0.013, wood, round_ends=True)
+        w.bent_rod([(x, y, z) for x, z in curve], 0.013, wood)
         w.rod((0.22, y, 0.03), (0.20, y, 0.64), 0.018, wood)
         w.rod((-0.24, y, 0.03), (-0.20, y, seat), 0.018, wood)
         w.rod((-0.20, y, seat - 0.02), (-0.36, y, height), 0.018, wood, round_ends=True)

@@ -14,7 +14,7 @@ from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look, MeshShape
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, drape, loft, named_mesh
-from sim.homes.housegen.furniture.workbench import Workbench
+from sim.homes.housegen.furniture.workbench import CORNERS, Workbench
 
 
 def _shower_set(w: Workbench, x: float, y: float, tray: float, metal: Look, *, rain: bool) -> None:
@@ -199,13 +199,12 @@ def clawfoot(w: Workbench) -> None:
     ]
     w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), white)
     w.ellipsoid((0.0, -ry + 0.05, high), (0.50 * rx, 0.05, 0.09), white, solid=False)
-    for sx in BOTH_SIDES:
-        for sy in BOTH_SIDES:
-            knee = (sx * 0.66 * rx, sy * 0.66 * ry, 0.17)
-            ankle = (sx * 0.60 * rx, sy * 0.64 * ry, 0.06)
-            w.rod((sx * 0.50 * rx, sy * 0.58 * ry, 0.26), knee, 0.032, metal, round_ends=True)
-            w.rod(knee, ankle, 0.024, metal, round_ends=True)
-            w.ellipsoid((sx * 0.66 * rx, sy * 0.66 * ry, 0.028), (0.046, 0.04, 0.028), metal)
+    for sx, sy in CORNERS:
+        knee = (sx * 0.66 * rx, sy * 0.66 * ry, 0.17)
+        ankle = (sx * 0.60 * rx, sy * 0.64 * ry, 0.06)
+        w.rod((sx * 0.50 * rx, sy * 0.58 * ry, 0.26), knee, 0.032, metal, round_ends=True)
+        w.rod(knee, ankle, 0.024, metal, round_ends=True)
+        w.ellipsoid((sx * 0.66 * rx, sy * 0.66 * ry, 0.028), (0.046, 0.04, 0.028), metal)
     for y in (0.22, 0.36):
         w.cylinder((-rx - 0.04, y), (0.0, high + 0.12), 0.012, metal)
     w.rod_y((-rx - 0.04, high + 0.12), (0.20, 0.38), 0.020, metal, round_ends=True)
@@ -251,8 +250,7 @@ def corner_cabin(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (0.07, 0.074), 0.045, metal, solid=False)
     w.box((half - 0.010, half - 0.002), (-half, half), (0.09, high), glass)
     for sy in BOTH_SIDES:
-        low, top = sorted((sy * (half - 0.010), sy * (half - 0.002)))
-        w.box((-half, half), (low, top), (0.09, high), glass)
+        w.box((-half, half), parts.on_side(sy, half - 0.010, half - 0.002), (0.09, high), glass)
         for x in (-half + 0.012, half - 0.012):
             y = sy * (half - 0.012)
             w.box(around(x, 0.012), around(y, 0.012), (0.06, high + 0.015), metal)

@@ -126,18 +126,9 @@ def storage(w: Workbench) -> None:
     for side in BOTH_SIDES:
         for i in range(2):
             x = 0.06 + i * 0.48 * length
-            y = side * half
-            w.box(
-                (x, x + 0.46 * length),
-                (min(y, y + side * 0.016), max(y, y + side * 0.016)),
-                (0.08, top - _MATTRESS),
-                look,
-                solid=False,
-            )
-            knob = y + side * 0.02
-            w.box(
-                (x + 0.18 * length, x + 0.28 * length), around(knob, 0.012), (0.19, 0.21), w.look("metal"), solid=False
-            )
+            front, knob = parts.on_side(side, half, half + 0.016), around(side * (half + 0.02), 0.012)
+            w.box((x, x + 0.46 * length), front, (0.08, top - _MATTRESS), look, solid=False)
+            w.box((x + 0.18 * length, x + 0.28 * length), knob, (0.19, 0.21), w.look("metal"), solid=False)
     head = w.length(0.90, 1.05)
     w.box((-0.25, 0.0), (-half, half), (0.0, 0.55), look)
     w.box((-0.25, -0.23), (-half, half), (0.55, head), look)

@@ -141,11 +141,9 @@ def media_low(w: Workbench) -> None:
     w.box(inset(x, 0.03, 0.05), inset(y, 0.05), (0.0, 0.06), w.look("dark"))
     third = width / 3
     for side in BOTH_SIDES:
-        low, high = sorted((side * 0.5 * width, side * (0.5 * width - third)))
-        w.box((x[0], x[1] - parts.FRONT_M), (low, high), (0.085, height - 0.03), body)
-        parts.plain_drawers(
-            w, x[1] - parts.FRONT_M, (low, high), (0.085, height - 0.03), 1, 1, body, w.look("metal"), "bar"
-        )
+        span = parts.on_side(side, 0.5 * width - third, 0.5 * width)
+        w.box((x[0], x[1] - parts.FRONT_M), span, (0.085, height - 0.03), body)
+        parts.plain_drawers(w, x[1] - parts.FRONT_M, span, (0.085, height - 0.03), 1, 1, body, w.look("metal"), "bar")
     w.box(inset(x, 0.012, 0.06), centred(third), around(0.5 * height, 0.01), body)
     w.box(inset(x, 0.08), (-0.18, 0.18), (0.085, 0.14), w.look("dark"), solid=False)
     w.top(inset(x, 0.03), inset(y, 0.05), height)
@@ -160,9 +158,9 @@ def media_legs(w: Workbench) -> None:
     w.box(inset(x, 0.01), inset(y, 0.01), (0.15, 0.175), wood)
     w.legs(inset(x, 0.005), inset(y, 0.005), (0.0, height - 0.035), 0.025, iron)
     side = w.choice(BOTH_SIDES)
-    low, high = sorted((side * 0.47 * width, side * 0.10 * width))
-    w.box(inset(x, 0.02, 0.03), (low, high), (0.175, height - 0.035), wood)
-    parts.plain_doors(w, x[1] - 0.03, (low, high), (0.175, height - 0.035), 1, wood, w.look("brass"), "knob")
+    span = parts.on_side(side, 0.10 * width, 0.47 * width)
+    w.box(inset(x, 0.02, 0.03), span, (0.175, height - 0.035), wood)
+    parts.plain_doors(w, x[1] - 0.03, span, (0.175, height - 0.035), 1, wood, w.look("brass"), "knob")
     w.box(inset(x, 0.08), around(-side * 0.30 * width, 0.15), (0.175, 0.24), w.look("dark"), solid=False)
     w.top(inset(x, 0.03), inset(y, 0.05), height)
 
@@ -211,8 +209,7 @@ def vanity_doors(w: Workbench) -> None:
     w.put(w.make("sink", use="vessel"), (0.02, 0.0, height))
     for side in BOTH_SIDES:
         if 0.5 * width > 0.45:
-            low, high = sorted((side * 0.32, side * (0.5 * width - 0.03)))
-            w.top(inset(x, 0.05), (low, high), height)
+            w.top(inset(x, 0.05), parts.on_side(side, 0.32, 0.5 * width - 0.03), height)
 
 
 def vanity_floating(w: Workbench) -> None:

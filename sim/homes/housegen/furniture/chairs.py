@@ -6,7 +6,6 @@ Sizes follow Panero & Zelnik, Human Dimension and Interior Space (seat 0.40-0.48
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 
@@ -153,8 +152,7 @@ def cantilever(w: Workbench) -> None:
             (f.back + 0.02, y, f.seat - 0.015),
             (f.back_x(f.height), y, f.height),
         ]
-        for a, b in itertools.pairwise(corners):
-            w.rod(a, b, r, tube, round_ends=True)
+        w.bent_rod(corners, r, tube)
     w.rod_y((f.back - 0.02, r), (-f.half + r, f.half - r), r, tube)
     w.box((f.back + 0.04, f.front), (-f.half + 0.005, f.half - 0.005), around(f.seat, 0.015), cover)
     _crossbar(w, f, (f.height - 0.20, f.height - 0.01), 0.03, cover, f.half - 0.005)
@@ -195,8 +193,7 @@ def windsor(w: Workbench) -> None:
         angle = math.pi * i / 6
         z = f.seat + (f.height - f.seat - 0.012) * math.sin(angle) ** 0.6
         bow.append((f.back_x(z) + 0.05, 0.92 * f.half * math.cos(angle), z))
-    for a, b in itertools.pairwise(bow):
-        w.rod(a, b, 0.012, wood, round_ends=True)
+    w.bent_rod(bow, 0.012, wood)
     for i in range(1, 6):
         x, y, z = bow[i]
         w.rod((f.back + 0.05, 0.8 * y, f.seat - 0.01), (x, y, z), 0.007, wood)
@@ -234,8 +231,7 @@ def cross_back(w: Workbench) -> None:
         (f.back_x(f.height), y * f.half, f.height - dz)
         for y, dz in ((-0.80, 0.06), (-0.5, 0.015), (0.5, 0.015), (0.80, 0.06))
     ]
-    for a, b in itertools.pairwise(arch):
-        w.rod(a, b, 0.015, wood, round_ends=True)
+    w.bent_rod(arch, 0.015, wood)
 
 
 STYLES = (

@@ -89,15 +89,9 @@ def campaign(w: Workbench) -> None:
     x, y = parts.case(w, depth, width, (0.09, height), wood)
     parts.plain_drawers(w, x, y, (0.10, 0.62 * height), 2, 1, wood, brass, "none")
     parts.plain_drawers(w, x, y, (0.62 * height, height - 0.02), 1, 2, wood, brass, "none")
-    for c, z in (
-        (-0.25 * width, 0.25 * height),
-        (0.25 * width, 0.25 * height),
-        (-0.25 * width, 0.48 * height),
-        (0.25 * width, 0.48 * height),
-        (-0.25 * width, 0.80 * height),
-        (0.25 * width, 0.80 * height),
-    ):
-        w.box((x + 0.016, x + 0.022), around(c, 0.05), around(z, 0.025), brass, solid=False)
+    for share in (0.25, 0.48, 0.80):
+        for c in centred(0.5 * width):
+            w.box((x + 0.016, x + 0.022), around(c, 0.05), around(share * height, 0.025), brass, solid=False)
     for side in BOTH_SIDES:
         for z in (0.09, height - 0.06):
             edge = side * (0.5 * width - 0.028)

@@ -210,8 +210,7 @@ def waterfall(w: Workbench) -> None:
     x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.06, height), stone)
     for side in BOTH_SIDES:
-        low, high = sorted((side * 0.5 * width, side * (0.5 * width - 0.06)))
-        w.box(x, (low, high), (0.0, height - 0.06), stone)
+        w.box(x, parts.on_side(side, 0.5 * width - 0.06, 0.5 * width), (0.0, height - 0.06), stone)
     body = w.look("lacquer")
     w.box(inset(x, 0.04, 0.30), inset(y, 0.06), (0.08, height - 0.06), body)
     w.box(inset(x, 0.10, 0.36), inset(y, 0.06), (0.0, 0.08), w.look("dark"))

@@ -5,7 +5,6 @@ Usual retail dimensions: throw cushions 0.40-0.50 m, floor cushions 0.45-0.70 m.
 
 from __future__ import annotations
 
-import itertools
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
@@ -76,7 +75,6 @@ def banded_cushion(w: Workbench) -> None:
 
 def knot_cushion(w: Workbench) -> None:
     """Builds a cushion that is a knot of thick rolls."""
-    r, look = 0.06, w.look("bright")
     loop = [
         (0.0, -0.12, 0.06),
         (0.05, 0.10, 0.06),
@@ -85,8 +83,7 @@ def knot_cushion(w: Workbench) -> None:
         (-0.05, -0.06, 0.22),
         (0.0, 0.11, 0.21),
     ]
-    for a, b in itertools.pairwise(loop):
-        w.rod(a, b, r, look, round_ends=True)
+    w.bent_rod(loop, 0.06, w.look("bright"))
 
 
 STYLES = (

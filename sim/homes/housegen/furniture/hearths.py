@@ -28,8 +28,7 @@ def _opening(w: Workbench, x: Range, half: float, z: Range, outer: float, top: f
     """
     char = w.look("char")
     for side in BOTH_SIDES:
-        low, high = sorted((side * half, side * outer))
-        w.box(x, (low, high), (0.0, top), look)
+        w.box(x, parts.on_side(side, half, outer), (0.0, top), look)
     w.box(x, (-half, half), (z[1], top), look)
     w.box((x[0], x[0] + 0.04), (-half, half), (0.0, z[1]), char)
     if z[0] > 0:
@@ -145,8 +144,7 @@ def electric(w: Workbench) -> None:
     flames(w, depth - 0.04, 0.14, [((i - 2) * 0.11, 0.18 + 0.07 * ((2 * i) % 3), 0.045) for i in range(5)])
     w.rod_y((depth - 0.03, 0.13), (-0.28, 0.28), 0.028, w.look("wood"), solid=False)
     for side in BOTH_SIDES:
-        low, high_ = sorted((side * (half + 0.025), side * (outer - 0.025)))
-        w.box((0.015, depth - 0.01), (low, high_), (0.46, 0.48), wood)
+        w.box((0.015, depth - 0.01), parts.on_side(side, half + 0.025, outer - 0.025), (0.46, 0.48), wood)
     w.top((0.04, depth - 0.04), (-outer + 0.05, outer - 0.05), top)
 
 

@@ -5,7 +5,6 @@ Usual retail dimensions: ceiling lamps 0.30-0.60 m across, floor lamps 1.40-1.75
 
 from __future__ import annotations
 
-import itertools
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
@@ -116,8 +115,7 @@ def arc_lamp(w: Workbench) -> None:
     metal, r = w.look("chrome"), w.length(0.14, 0.18)
     w.cylinder((-0.35, 0.0), (0.0, 0.05), 0.16, w.look("stone"))
     arc = [(-0.35, 0.05), (-0.35, 1.00), (-0.24, 1.45), (0.02, 1.72), (0.32, 1.74), (0.52, 1.58)]
-    for a, b in itertools.pairwise(arc):
-        w.rod((a[0], 0.0, a[1]), (b[0], 0.0, b[1]), 0.012, metal, round_ends=True)
+    w.bent_rod([(x, 0.0, z) for x, z in arc], 0.012, metal)
     w.mesh(
         turned([(-0.12, r), (-0.04, 0.92 * r), (0.03, 0.5 * r), (0.05, 0.1 * r)], 14, hull=True),
         (0.52, 0.0, 1.55),

@@ -12,7 +12,7 @@ from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, polar
 from sim.homes.housegen.furniture.parts.flat_pictures import Page, photograph
 from sim.homes.housegen.furniture.parts.leaves import Body, arch, blade, blossom, joined, tube
 from sim.homes.housegen.furniture.shapes import chamfered_box, hoop, turned
-from sim.homes.housegen.furniture.workbench import Workbench
+from sim.homes.housegen.furniture.workbench import CORNERS, Workbench
 
 
 def book_stack(w: Workbench) -> None:
@@ -119,17 +119,8 @@ def bottles(w: Workbench) -> None:
     w.box((-0.10, 0.10), (-0.17, 0.17), (0.0, 0.015), w.look("wood"))
     glass = w.new_look("book")
     for y, high in ((-0.10, 0.26), (0.0, 0.30)):
-        w.mesh(
-            turned(
-                [
-                    *((0.015 + z * (high - 0.015), r) for z, r in ((0.0, 0.035), (0.52, 0.036), (0.62, 0.031))),
-                    *((0.015 + z * (high - 0.015), r) for z, r in ((0.70, 0.016), (0.75, 0.013), (1.0, 0.013))),
-                ],
-                12,
-            ),
-            (0.0, y, 0.0),
-            glass,
-        )
+        bottle = [(0.0, 0.035), (0.52, 0.036), (0.62, 0.031), (0.70, 0.016), (0.75, 0.013), (1.0, 0.013)]
+        w.mesh(turned([(0.015 + z * (high - 0.015), r) for z, r in bottle], 12), (0.0, y, 0.0), glass)
         w.cylinder((0.0, y), (0.3 * high, 0.5 * high), 0.0372, w.look("paper"), solid=False)
         w.cylinder((0.0, y), (high - 0.03, high + 0.002), 0.0145, w.look("dark"), solid=False)
         glass = w.new_look("book")
@@ -153,9 +144,8 @@ def suitcase(w: Workbench) -> None:
     for i in range(4):
         y = (i - 1.5) * 0.09
         w.box((0.12, 0.132), around(y, 0.018), (0.12, high - 0.02), look, solid=False)
-    for sx in BOTH_SIDES:
-        for sy in BOTH_SIDES:
-            w.ball((sx * 0.09, sy * 0.16, 0.03), 0.03, dark)
+    for sx, sy in CORNERS:
+        w.ball((sx * 0.09, sy * 0.16, 0.03), 0.03, dark)
     for y in (-0.08, 0.08):
         w.cylinder((-0.08, y), (high + 0.03, high + 0.38), 0.008, w.look("chrome"))
     w.rod_y((-0.08, high + 0.38), (-0.10, 0.10), 0.015, dark, round_ends=True)

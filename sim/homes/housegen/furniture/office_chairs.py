@@ -6,7 +6,6 @@ Interior Space.
 
 from __future__ import annotations
 
-import itertools
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
@@ -67,8 +66,7 @@ def conference_chair(w: Workbench) -> None:
     w.mesh(strip(path[::-1], 0.018, 2 * half - 0.03), (0.0, 0.0, 0.0), cover)
     for side in BOTH_SIDES:
         y = side * (half - 0.012)
-        for a, b in itertools.pairwise(path[1:]):
-            w.rod((a[0], y, a[1] - 0.008), (b[0], y, b[1] - 0.008), 0.012, chrome, round_ends=True)
+        w.bent_rod([(x, y, z - 0.008) for x, z in path[1:]], 0.012, chrome)
         w.cylinder((0.10, side * half), (seat - 0.01, seat + 0.2), 0.01, chrome)
         w.bar((0.14, side * half, seat + 0.2), (-0.26, side * half, seat + 0.2), 0.04, 0.02, cover)
     w.box((-0.06, 0.06), (-half + 0.01, half - 0.01), (seat - 0.045, seat - 0.02), chrome)

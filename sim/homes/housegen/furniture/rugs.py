@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import around, centred
+from sim.homes.housegen.furniture.parts import around, centred, on_side
 from sim.homes.housegen.furniture.workbench import Workbench
 
 
@@ -42,8 +42,8 @@ def oriental(w: Workbench) -> None:
     width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
     w.box(centred(depth), centred(width, 0.06), (0.0, 0.009), w.look("rug"), solid=False)
     for side in (-1, 1):
-        low, high = sorted((side * (0.5 * width - 0.065), side * 0.5 * width))
-        w.box(centred(depth), (low, high), (0.0, 0.004), w.look("linen"), solid=False)
+        fringe = on_side(side, 0.5 * width - 0.065, 0.5 * width)
+        w.box(centred(depth), fringe, (0.0, 0.004), w.look("linen"), solid=False)
 
 
 STYLES = (

@@ -103,8 +103,9 @@ def turned(profile_m: Sequence[tuple[float, float]], segments: int = 12, *, hull
     return loft([Ring(z, r, r) for z, r in profile_m], segments, hull=hull)
 
 
-def hoop(radius_m: float, thick_m: float, height_m: float, segments: int = 20) -> MeshShape:
+def hoop(radius_m: float, thick_m: float, height_m: float) -> MeshShape:
     """Returns a flat band about the z axis with outer radius `radius_m` and its middle at z = 0."""
+    segments = 20
     angles = math.pi / 4 + np.arange(segments) * (math.tau / segments)
     inner = radius_m - thick_m
     vertices = np.vstack(
@@ -154,13 +155,13 @@ def pillow(size_m: tuple[float, float, float], power: float = 4.5) -> MeshShape:
     return loft([Ring(z * dz, s * dx, s * dy, power=power) for z, s in levels], 16, hull=True)
 
 
-def puffed(radius_m: float, height_m: float, *, firm: float = 3.0, segments: int = 18) -> MeshShape:
+def puffed(radius_m: float, height_m: float, *, firm: float = 3.0) -> MeshShape:
     """Returns a round stuffed body that stands on z = 0: a pouf or a cushion; a larger `firm` gives a flatter top."""
-    rings = []
-    for level in (-1.0, -0.92, -0.7, -0.3, 0.3, 0.7, 0.92, 1.0):
-        r = radius_m * max(0.55, (1.0 - abs(level) ** firm) ** (1.0 / firm))
-        rings.append(Ring(0.5 * height_m * (1.0 + level), r, r))
-    return loft(rings, min(segments, MAX_VERTICES // len(rings)), hull=True)
+    profile = [
+        (0.5 * height_m * (1.0 + level), radius_m * max(0.55, (1.0 - abs(level) ** firm) ** (1.0 / firm)))
+        for level in (-1.0, -0.92, -0.7, -0.3, 0.3, 0.7, 0.92, 1.0)
+    ]
+    return turned(profile, 18, hull=True)
 
 
 def strip(path_m: Sequence[tuple[float, float]], thickness_m: float, width_m: float) -> MeshShape:

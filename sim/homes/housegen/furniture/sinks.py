@@ -10,32 +10,8 @@ from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
-from sim.homes.housegen.furniture.shapes import Ring, loft
+from sim.homes.housegen.furniture.shapes import Ring, loft, turned
 from sim.homes.housegen.furniture.workbench import Range, Workbench
-
-
-def _bowl(
-    w: Workbench,
-    rx: float,
-    ry: float,
-    high: float,
-    look: Look,
-    at: tuple[float, float, float],
-    *,
-    power: float = 2.0,
-    foot: float = 0.6,
-) -> None:
-    """Adds a hollow bowl that stands on `at` and opens upwards."""
-    rings = [
-        Ring(0.0, foot * rx, foot * ry, power=power),
-        Ring(0.55 * high, 0.92 * rx, 0.92 * ry, power=power),
-        Ring(high, rx, ry, power=power),
-        Ring(high, rx - 0.022, ry - 0.022, power=power),
-        Ring(0.55 * high, 0.80 * rx, 0.80 * ry, power=power),
-        Ring(0.18 * high, 0.35 * rx, 0.35 * ry, power=power),
-    ]
-    w.mesh(loft(rings, 16), at, look)
-    w.cylinder((at[0], at[1]), (at[2] + 0.17 * high, at[2] + 0.2 * high), 0.022, w.look("chrome"), solid=False)
 
 
 def _ceramic_basin(
@@ -107,8 +83,11 @@ def inset_steel(w: Workbench) -> None:
 
 def vessel_round(w: Workbench) -> None:
     """Builds a round bowl that stands on a washstand."""
-    r = w.length(0.19, 0.22)
-    _bowl(w, r, r, 0.13, w.look("ceramic"), (0.0, 0.0, 0.0))
+    r, high, white = w.length(0.19, 0.22), 0.13, w.look("ceramic")
+    outside = [(0.0, 0.6 * r), (0.55 * high, 0.92 * r), (high, r)]
+    inside = [(high, r - 0.022), (0.55 * high, 0.80 * r), (0.18 * high, 0.35 * r)]
+    w.mesh(turned(outside + inside, 16), (0.0, 0.0, 0.0), white)
+    w.cylinder((0.0, 0.0), (0.17 * high, 0.2 * high), 0.022, w.look("chrome"), solid=False)
     parts.mixer_tap(w, (-r - 0.02, 0.0, 0.0), 0.16, 0.24, w.look("chrome"))
 
 

@@ -6,7 +6,6 @@ Sizes follow Panero & Zelnik (sofa depth 0.81-1.02 m, seat 0.38-0.45 m high, 0.5
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass, replace
 
 from sim.homes.housegen.furniture import parts
@@ -173,10 +172,9 @@ def corner(w: Workbench) -> None:
     cloth, side = w.look("fabric"), w.choice(BOTH_SIDES)
     far = side * 0.5 * width  # outer edge of the chaise
     wide = 0.80
-    x0 = -0.5 * depth
-    low, high = sorted((far - side * wide, far))
-    w.box((x0, x0 + chaise - 0.02), (low, high), (0.10, s.seat - 0.14), cloth)
-    w.box((x0, 0.5 * depth - 0.02), tuple(sorted((-far, far - side * wide))), (0.10, s.seat - 0.14), cloth)  # type: ignore[arg-type]
+    x0, inner = -0.5 * depth, 0.5 * width - wide
+    w.box((x0, x0 + chaise - 0.02), parts.on_side(side, inner, 0.5 * width), (0.10, s.seat - 0.14), cloth)
+    w.box((x0, 0.5 * depth - 0.02), parts.on_side(side, -0.5 * width, inner), (0.10, s.seat - 0.14), cloth)
     w.mesh(
         chamfered_box((s.back, width, s.height - 0.10), 0.03), (x0 + 0.5 * s.back, 0.0, 0.5 * (s.height + 0.10)), cloth
     )
@@ -254,8 +252,7 @@ def camelback(w: Workbench) -> None:
     crest = [(half * t, s.height - 0.03 - 0.20 * t * t) for t in (-1.0, -0.72, -0.4, 0.0, 0.4, 0.72, 1.0)]
     back = [(x, y, z) for x in (0.0, 0.12) for y, z in (*crest, (-half, s.seat - 0.2), (half, s.seat - 0.2))]
     w.mesh(named_mesh("crest", back), (x0, 0.0, 0.0), cloth)
-    for a, b in itertools.pairwise(crest):
-        w.rod((x0 + 0.06, *a), (x0 + 0.06, *b), 0.025, wood, round_ends=True)
+    w.bent_rod([(x0 + 0.06, y, z) for y, z in crest], 0.025, wood)
     for side in BOTH_SIDES:
         y = side * (half - 0.5 * s.arm)
         w.box((x0 + 0.06, 0.5 * s.depth - 0.05), around(y, 0.05), (s.seat - 0.22, 0.60), cloth)
@@ -294,11 +291,9 @@ def bubble(w: Workbench) -> None:
         (-r + thick, 0.45 * half - 0.05),
     ]
     spine = [*arc, *[(x, -y) for x, y in reversed(arc)]]
-    for a, b in itertools.pairwise(spine):
-        tops = [height - thick - (0.16 if p == spine[0] or p == spine[-1] else 0.0) for p in (a, b)]
-        w.rod((*a, tops[0]), (*b, tops[1]), thick, cloth, round_ends=True)
-    for a, b in itertools.pairwise(spine[1:-1]):
-        w.rod((*a, seat), (*b, seat), thick - 0.01, cloth, round_ends=True)
+    ends = (spine[0], spine[-1])
+    w.bent_rod([(x, y, height - thick - (0.16 if (x, y) in ends else 0.0)) for x, y in spine], thick, cloth)
+    w.bent_rod([(x, y, seat) for x, y in spine[1:-1]], thick - 0.01, cloth)
     _loose_cushions(w, _Sofa(width, depth, height, seat, 0.45, 0.26), 0.28)
 
 

@@ -11,7 +11,7 @@ import math
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, polar
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, puffed, strip, turned
-from sim.homes.housegen.furniture.workbench import Workbench
+from sim.homes.housegen.furniture.workbench import CORNERS, Workbench
 
 
 def bar_wood(w: Workbench) -> None:
@@ -23,15 +23,14 @@ def bar_wood(w: Workbench) -> None:
         (0.0, 0.0, seat - 0.025),
         w.look("leather") if w.chance(0.4) else wood,
     )
-    for sx in BOTH_SIDES:
-        for sy in BOTH_SIDES:
-            w.bar(
-                (sx * (half + 0.02), sy * (half + 0.02), 0.0),
-                (sx * (half - 0.03), sy * (half - 0.03), seat - 0.05),
-                0.036,
-                0.036,
-                wood,
-            )
+    for sx, sy in CORNERS:
+        w.bar(
+            (sx * (half + 0.02), sy * (half + 0.02), 0.0),
+            (sx * (half - 0.03), sy * (half - 0.03), seat - 0.05),
+            0.036,
+            0.036,
+            wood,
+        )
     for side in BOTH_SIDES:
         edge = half + 0.002
         w.box(around(side * edge, 0.012), (-edge, edge), (0.24, 0.27), wood)
@@ -125,13 +124,12 @@ def bar_steel(w: Workbench) -> None:
     w.mass_kg = 5.5
     seat, steel = w.length(0.64, 0.76), w.look("lacquer") if w.chance(0.5) else w.look("metal")
     w.mesh(chamfered_box((0.31, 0.31, 0.03), 0.012), (0.0, 0.0, seat - 0.015), steel)
-    for sx in BOTH_SIDES:
-        for sy in BOTH_SIDES:
-            w.mesh(
-                frustum((0.03, 0.03), (0.07, 0.07), seat - 0.02, (-sx * 0.075, -sy * 0.075)),
-                (sx * 0.195, sy * 0.195, 0.0),
-                steel,
-            )
+    for sx, sy in CORNERS:
+        w.mesh(
+            frustum((0.03, 0.03), (0.07, 0.07), seat - 0.02, (-sx * 0.075, -sy * 0.075)),
+            (sx * 0.195, sy * 0.195, 0.0),
+            steel,
+        )
     for side in BOTH_SIDES:
         w.box(around(side * 0.172, 0.006), (-0.17, 0.17), (0.26, 0.30), steel)
         w.box((-0.17, 0.17), around(side * 0.172, 0.006), (0.26, 0.30), steel)
@@ -141,17 +139,8 @@ def stump(w: Workbench) -> None:
     """Builds a solid wooden stool in the shape of an hourglass."""
     w.mass_kg = 12.0
     high, r = w.length(0.42, 0.46), 0.5 * w.length(0.30, 0.36)
-    w.mesh(
-        turned(
-            [
-                *((z * high, s * r) for z, s in ((0.0, 0.97), (0.03, 1.0), (0.25, 0.82), (0.5, 0.7))),
-                *((z * high, s * r) for z, s in ((0.75, 0.82), (0.97, 1.0), (1.0, 0.97))),
-            ],
-            20,
-        ),
-        (0.0, 0.0, 0.0),
-        w.look("wood"),
-    )
+    shares = [(0.0, 0.97), (0.03, 1.0), (0.25, 0.82), (0.5, 0.7), (0.75, 0.82), (0.97, 1.0), (1.0, 0.97)]
+    w.mesh(turned([(z * high, s * r) for z, s in shares], 20), (0.0, 0.0, 0.0), w.look("wood"))
 
 
 def folding_stool(w: Workbench) -> None:

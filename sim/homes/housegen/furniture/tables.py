@@ -10,8 +10,8 @@ from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
-from sim.homes.housegen.furniture.shapes import Ring, frustum, loft
-from sim.homes.housegen.furniture.workbench import Range, Workbench
+from sim.homes.housegen.furniture.shapes import frustum, turned
+from sim.homes.housegen.furniture.workbench import CORNERS, Range, Workbench
 
 
 def _apron(w: Workbench, x: Range, y: Range, z: Range, look: Look) -> None:
@@ -20,16 +20,6 @@ def _apron(w: Workbench, x: Range, y: Range, z: Range, look: Look) -> None:
         w.box(around(edge, 0.011), y, z, look)
     for edge in y:
         w.box(x, around(edge, 0.011), z, look)
-
-
-def _stem(w: Workbench, rings: list[Ring], look: Look) -> None:
-    """Adds a turned stem.
-
-    The visual geom is a loft. The collision geoms are foot and post, which leave room for legs under the top.
-    """
-    w.mesh(loft(rings, 12), (0.0, 0.0, 0.0), look, solid=False)
-    w.cylinder((0.0, 0.0), (0.0, rings[2].z_m), 0.8 * rings[0].rx_m, look)
-    w.cylinder((0.0, 0.0), (rings[2].z_m, rings[-1].z_m), 0.8 * min(r.rx_m for r in rings), look)
 
 
 def farmhouse(w: Workbench) -> None:
@@ -48,10 +38,9 @@ def splayed(w: Workbench) -> None:
     wood = w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.025, height), w.look("lacquer") if w.chance(0.4) else wood)
     w.box(inset(x, 0.12), inset(y, 0.15), (height - 0.075, height - 0.025), wood)
-    for sx in BOTH_SIDES:
-        for sy in BOTH_SIDES:
-            leg = frustum((0.030, 0.030), (0.055, 0.055), height - 0.025, (-sx * 0.07, -sy * 0.07))
-            w.mesh(leg, (sx * (0.5 * depth - 0.09), sy * (0.5 * width - 0.11), 0.0), wood)
+    for sx, sy in CORNERS:
+        leg = frustum((0.030, 0.030), (0.055, 0.055), height - 0.025, (-sx * 0.07, -sy * 0.07))
+        w.mesh(leg, (sx * (0.5 * depth - 0.09), sy * (0.5 * width - 0.11), 0.0), wood)
 
 
 def round_pedestal(w: Workbench) -> None:
@@ -60,15 +49,11 @@ def round_pedestal(w: Workbench) -> None:
     look = w.look("lacquer")
     parts.round_top(w, radius, (height - 0.025, height), w.look("stone") if w.chance(0.4) else w.look("wood"))
     foot = 0.52 * radius
-    rings = [
-        Ring(0.0, foot, foot),
-        Ring(0.015, foot, foot),
-        Ring(0.06, 0.5 * foot, 0.5 * foot),
-        Ring(0.2, 0.05, 0.05),
-        Ring(0.6 * height, 0.04, 0.04),
-        Ring(height - 0.02, 0.15, 0.15),
-    ]
-    _stem(w, rings, look)
+    stem = [(0.0, foot), (0.015, foot), (0.06, 0.5 * foot), (0.2, 0.05), (0.6 * height, 0.04), (height - 0.02, 0.15)]
+    w.mesh(turned(stem, 12), (0.0, 0.0, 0.0), look, solid=False)
+    # A foot and a post collide, which leaves room for legs under the top.
+    w.cylinder((0.0, 0.0), (0.0, 0.06), 0.8 * foot, look)
+    w.cylinder((0.0, 0.0), (0.06, height - 0.02), 0.8 * 0.04, look)
 
 
 def industrial(w: Workbench) -> None:
@@ -132,14 +117,14 @@ def desk_pedestal(w: Workbench) -> None:
     wood, front = w.look("wood"), w.look("lacquer")
     x, _ = parts.slab(w, depth, width, (height - 0.03, height), wood)
     side = w.choice(BOTH_SIDES)
-    near, far = side * (0.5 * width - 0.02), side * (0.5 * width - 0.42)
-    low, high = min(near, far), max(near, far)
-    w.box(inset(x, 0.02, 0.05), (low, high), (0.05, height - 0.03), wood)
-    w.box(inset(x, 0.05, 0.09), (low + 0.02, high - 0.02), (0.0, 0.05), w.look("dark"))
-    parts.plain_drawers(w, x[1] - 0.05, (low, high), (0.06, height - 0.04), 3, 1, front, w.look("chrome"))
+    block = parts.on_side(side, 0.5 * width - 0.42, 0.5 * width - 0.02)
+    w.box(inset(x, 0.02, 0.05), block, (0.05, height - 0.03), wood)
+    w.box(inset(x, 0.05, 0.09), inset(block, 0.02), (0.0, 0.05), w.look("dark"))
+    parts.plain_drawers(w, x[1] - 0.05, block, (0.06, height - 0.04), 3, 1, front, w.look("chrome"))
     panel = -side * (0.5 * width - 0.035)
     w.box(inset(x, 0.02, 0.04), around(panel, 0.015), (0.0, height - 0.03), wood)
-    w.box((x[0] + 0.05, x[0] + 0.068), (min(far, panel), max(far, panel)), (0.30, height - 0.03), wood)
+    back = parts.on_side(side, 0.035 - 0.5 * width, 0.5 * width - 0.42)
+    w.box((x[0] + 0.05, x[0] + 0.068), back, (0.30, height - 0.03), wood)
 
 
 def desk_frame(w: Workbench) -> None:

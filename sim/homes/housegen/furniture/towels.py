@@ -5,7 +5,6 @@ Usual retail dimensions: hand towels 0.50 x 1.00 m, bath towels 0.70 x 1.40 m, r
 
 from __future__ import annotations
 
-import itertools
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
@@ -106,8 +105,7 @@ def towel_ring(w: Workbench) -> None:
     w.mount_height_m = 0.80
     w.rod_x((0.0, 0.56), (0.0, 0.04), 0.022, brass)
     points = [(0.04, 0.085 * math.sin(a), 0.475 + 0.085 * math.cos(a)) for a in (i * math.tau / 8 for i in range(9))]
-    for a, b in itertools.pairwise(points):
-        w.rod(a, b, 0.006, brass, round_ends=True)
+    w.bent_rod(points, 0.006, brass)
     w.mesh(drape(0.26, 0.40, 0.06, 4), (0.02, 0.0, 0.0), cloth)
     w.mesh(drape(0.20, 0.05, 0.05, 3), (0.022, 0.0, 0.385), cloth)
 

@@ -6,6 +6,8 @@ Usual retail dimensions: utility shelves 0.60-0.90 m wide, 0.35-0.45 m deep and 
 
 from __future__ import annotations
 
+from functools import partial
+
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
@@ -26,18 +28,18 @@ def _folded(w: Workbench, x: float, y: float, z: float, room: float) -> None:
         z, room = z + thick, room - thick
 
 
-def _bottle(w: Workbench, x: float, y: float, z: float) -> None:
+def _bottle(w: Workbench, y: float, z: float) -> None:
     """Adds a bottle of detergent."""
     high, look = w.choice((0.19, 0.22, 0.25)), w.new_look("plastic")
-    w.mesh(frustum((0.07, 0.11), (0.05, 0.05), high), (x, y, z), look, solid=False)
-    w.box(around(x, 0.02), around(y, 0.02), (z + high, z + high + 0.03), w.new_look("plastic"), solid=False)
+    w.mesh(frustum((0.07, 0.11), (0.05, 0.05), high), (0.0, y, z), look, solid=False)
+    w.box((-0.02, 0.02), around(y, 0.02), (z + high, z + high + 0.03), w.new_look("plastic"), solid=False)
 
 
-def _carton(w: Workbench, x: float, y: float, z: float) -> None:
+def _carton(w: Workbench, y: float, z: float) -> None:
     """Adds a carton of washing powder."""
     high = w.length(0.17, 0.24)
-    w.box(around(x, 0.05), around(y, 0.08), (z, z + high), w.new_look("bright"), solid=False)
-    w.box((x + 0.05, x + 0.052), around(y, 0.06), (z + 0.3 * high, z + 0.7 * high), w.look("paper"), solid=False)
+    w.box((-0.05, 0.05), around(y, 0.08), (z, z + high), w.new_look("bright"), solid=False)
+    w.box((0.05, 0.052), around(y, 0.06), (z + 0.3 * high, z + 0.7 * high), w.look("paper"), solid=False)
 
 
 def _basket(w: Workbench, x: float, y: float, z: float, wide: float, high: float) -> None:
@@ -46,22 +48,22 @@ def _basket(w: Workbench, x: float, y: float, z: float, wide: float, high: float
     w.mesh(frustum((0.26, 0.9 * wide), (0.14, 0.5 * wide), 0.04), (x, y, z + high), w.new_look("towel"), solid=False)
 
 
-def _shoe_boxes(w: Workbench, x: float, y: float, z: float, room: float) -> None:
+def _shoe_boxes(w: Workbench, y: float, z: float, room: float) -> None:
     """Adds one to three shoe boxes on top of each other."""
     for _ in range(min(w.whole(1, 3), int(room / 0.13))):
         look = w.new_look(w.choice(("cardboard", "bright", "paper")))
-        w.box((x - 0.16, x + 0.15), around(y, 0.10), (z, z + 0.115), look, solid=False)
+        w.box((-0.16, 0.15), around(y, 0.10), (z, z + 0.115), look, solid=False)
         z += 0.12
 
 
-def _shoes(w: Workbench, x: float, y: float, z: float) -> None:
+def _shoes(w: Workbench, y: float, z: float) -> None:
     """Adds a pair of shoes with their toes to the front."""
     look = w.new_look(w.choice(("leather", "bright", "dark")))
     for side in BOTH_SIDES:
-        w.mesh(frustum((0.26, 0.09), (0.10, 0.07), 0.09, (-0.07, 0.0)), (x, y + 0.055 * side, z), look, solid=False)
+        w.mesh(frustum((0.26, 0.09), (0.10, 0.07), 0.09, (-0.07, 0.0)), (0.0, y + 0.055 * side, z), look, solid=False)
 
 
-def _stock(w: Workbench, x: float, y: Range, z: float, room: float, *, linen: bool) -> None:
+def _stock(w: Workbench, y: Range, z: float, room: float, *, linen: bool) -> None:
     """Fills a board at height z, with `room` metres above it, with the goods of a closet (`linen`) or of a laundry."""
     count = max(1, int((y[1] - y[0]) / 0.31))
     pitch = (y[1] - y[0]) / count
@@ -70,22 +72,22 @@ def _stock(w: Workbench, x: float, y: Range, z: float, room: float, *, linen: bo
         if linen:
             kind = w.choice(("folded", "folded", "boxes", "shoes"))
             if kind == "folded" or (kind == "boxes" and room < 0.14):
-                _folded(w, x, at, z, room)
+                _folded(w, 0.0, at, z, room)
             elif kind == "boxes":
-                _shoe_boxes(w, x, at, z, room)
+                _shoe_boxes(w, at, z, room)
             else:
-                _shoes(w, x, at, z)
+                _shoes(w, at, z)
         else:
             kind = w.choice(("bottles", "bottles", "carton", "basket", "folded"))
             if kind == "bottles":
                 for side in BOTH_SIDES:
-                    _bottle(w, x, at + 0.07 * side, z)
+                    _bottle(w, at + 0.07 * side, z)
             elif kind == "carton":
-                _carton(w, x, at, z)
+                _carton(w, at, z)
             elif kind == "basket":
-                _basket(w, x, at, z, pitch - 0.05, w.choice((0.15, 0.18)))
+                _basket(w, 0.0, at, z, pitch - 0.05, w.choice((0.15, 0.18)))
             else:
-                _folded(w, x, at, z, room)
+                _folded(w, 0.0, at, z, room)
 
 
 def _side_boards(w: Workbench, x: Range, y: Range, levels: list[float], height: float, look: Look) -> None:
@@ -96,8 +98,8 @@ def _side_boards(w: Workbench, x: Range, y: Range, levels: list[float], height: 
         w.box(x, inset(y, 0.02), (z, z + 0.02), look)
 
 
-def _wire_shelf(w: Workbench, *, linen: bool) -> None:
-    """Builds four boards between round posts, as in a storeroom."""
+def wire_shelf(w: Workbench, *, linen: bool) -> None:
+    """Builds four metal boards between round posts, with the goods of a closet (`linen`) or of a laundry."""
     width, depth, height = w.width(0.70, 0.90), w.depth(0.36, 0.42), w.height(1.55, 1.75)
     metal, x, y = w.look("metal"), *parts.footprint(depth, width)
     w.legs(inset(x, 0.013), inset(y, 0.013), (0.0, height), 0.026, metal, round_=True)
@@ -106,17 +108,7 @@ def _wire_shelf(w: Workbench, *, linen: bool) -> None:
         z = 0.12 + i * step
         w.box(inset(x, 0.01), inset(y, 0.01), (z, z + 0.02), metal)
         if i < 3:
-            _stock(w, 0.0, inset(y, 0.04), z + 0.02, step - 0.04, linen=linen)
-
-
-def wire_shelf_laundry(w: Workbench) -> None:
-    """Builds a metal storeroom shelf with detergents, cartons and baskets."""
-    _wire_shelf(w, linen=False)
-
-
-def wire_shelf_linen(w: Workbench) -> None:
-    """Builds a metal storeroom shelf with folded clothes, shoe boxes and shoes."""
-    _wire_shelf(w, linen=True)
+            _stock(w, inset(y, 0.04), z + 0.02, step - 0.04, linen=linen)
 
 
 def hamper_tower(w: Workbench) -> None:
@@ -126,7 +118,7 @@ def hamper_tower(w: Workbench) -> None:
     parts.open_case(w, x, y, (0.0, height), 0.02, look)
     for z, room in ((0.74, 0.36), (1.14, height - 1.2)):
         w.box((x[0] + 0.012, x[1]), inset(y, 0.02), (z, z + 0.02), look)
-        _stock(w, 0.0, inset(y, 0.04), z + 0.02, room, linen=False)
+        _stock(w, inset(y, 0.04), z + 0.02, room, linen=False)
     for side in BOTH_SIDES:
         span = parts.on_side(side, 0.01, 0.5 * width - 0.025)
         w.box((x[1] - 0.03, x[1] - 0.01), span, (0.05, 0.70), w.look("wicker"), tilt=0.05)
@@ -148,11 +140,11 @@ def walk_in_case(w: Workbench) -> None:
         z = 0.62 + i * step
         if i:
             w.box((x[0] + 0.012, x[1]), inset(y, 0.02), (z, z + 0.02), look)
-        _stock(w, 0.0, inset(y, 0.04), z + (0.02 if i else 0.0), step - 0.05, linen=True)
+        _stock(w, inset(y, 0.04), z + (0.02 if i else 0.0), step - 0.05, linen=True)
 
 
-def _slatted_shelf(w: Workbench, *, linen: bool) -> None:
-    """Builds three or four slatted boards between wooden frames, braced by a cross behind."""
+def slatted_shelf(w: Workbench, *, linen: bool) -> None:
+    """Builds slatted boards between wooden frames with a cross behind, with the goods of a closet or of a laundry."""
     width, depth, height = w.width(0.70, 0.95), w.depth(0.38, 0.44), w.height(1.50, 1.80)
     wood, iron, x, y = w.look("wood"), w.look("iron"), *parts.footprint(depth, width)
     for side in BOTH_SIDES:
@@ -167,19 +159,9 @@ def _slatted_shelf(w: Workbench, *, linen: bool) -> None:
             front = x[0] + 0.005 + n * (depth - 0.01) / 3
             w.box((front, front + (depth - 0.01) / 3 - 0.025), inset(y, 0.01), (z, z + 0.022), wood)
         if i < 3:
-            _stock(w, 0.0, inset(y, 0.06), z + 0.022, step - 0.04, linen=linen)
+            _stock(w, inset(y, 0.06), z + 0.022, step - 0.04, linen=linen)
     for a, b in (inset(y, 0.03), (y[1] - 0.03, y[0] + 0.03)):
         w.bar((x[0], a, 0.15), (x[0], b, height - 0.1), 0.02, 0.004, iron, solid=False)
-
-
-def slatted_shelf_laundry(w: Workbench) -> None:
-    """Builds a slatted wooden shelf with detergents, cartons and baskets."""
-    _slatted_shelf(w, linen=False)
-
-
-def slatted_shelf_linen(w: Workbench) -> None:
-    """Builds a slatted wooden shelf with folded clothes, shoe boxes and shoes."""
-    _slatted_shelf(w, linen=True)
 
 
 def drying_cupboard(w: Workbench) -> None:
@@ -189,7 +171,7 @@ def drying_cupboard(w: Workbench) -> None:
     w.box((x[0], x[1] - parts.FRONT_M), y, (0.06, 0.86), look)
     w.box(inset(x, 0.03, 0.06), inset(y, 0.02), (0.0, 0.06), w.look("dark"))
     parts.plain_doors(w, x[1] - parts.FRONT_M, y, (0.07, 0.85), 2, look, w.look("metal"), "knob")
-    _stock(w, 0.0, inset(y, 0.05), 0.86, 0.3, linen=False)
+    _stock(w, inset(y, 0.05), 0.86, 0.3, linen=False)
     for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.015)
         w.box((x[0], x[0] + 0.03), around(edge, 0.015), (0.86, height), look)
@@ -208,10 +190,10 @@ def shoe_bench(w: Workbench) -> None:
     for z, room in ((0.02, 0.2), (0.24, 0.2)):
         for n in range(3):
             if w.chance(0.7):
-                _shoes(w, 0.0, (n - 1) * 0.3 * width, z)
+                _shoes(w, (n - 1) * 0.3 * width, z)
         w.box((x[0], x[0] + 0.012), inset(y, 0.02), (z, z + room), wood, solid=False)
     for z, room in ((0.46, 0.47), (0.97, height - 1.01)):
-        _stock(w, 0.0, inset(y, 0.04), z, room, linen=True)
+        _stock(w, inset(y, 0.04), z, room, linen=True)
 
 
 def _hung(w: Workbench, x: float, z: float, y: Range, long: float) -> None:
@@ -294,13 +276,13 @@ def airer_frame(w: Workbench) -> None:
 
 
 STYLES = (
-    Style("shelving", "wire_shelf_laundry", "train", wire_shelf_laundry, ("laundry",)),
+    Style("shelving", "wire_shelf_laundry", "train", partial(wire_shelf, linen=False), ("laundry",)),
     Style("shelving", "hamper_tower", "train", hamper_tower, ("laundry",)),
-    Style("shelving", "slatted_shelf_laundry", "heldout", slatted_shelf_laundry, ("laundry",)),
+    Style("shelving", "slatted_shelf_laundry", "heldout", partial(slatted_shelf, linen=False), ("laundry",)),
     Style("shelving", "drying_cupboard", "heldout", drying_cupboard, ("laundry",)),
-    Style("shelving", "wire_shelf_linen", "train", wire_shelf_linen, ("linen",)),
+    Style("shelving", "wire_shelf_linen", "train", partial(wire_shelf, linen=True), ("linen",)),
     Style("shelving", "walk_in_case", "train", walk_in_case, ("linen",)),
-    Style("shelving", "slatted_shelf_linen", "heldout", slatted_shelf_linen, ("linen",)),
+    Style("shelving", "slatted_shelf_linen", "heldout", partial(slatted_shelf, linen=True), ("linen",)),
     Style("shelving", "shoe_bench", "heldout", shoe_bench, ("linen",)),
     Style("clothes", "winged_airer", "train", winged_airer, ("drying",)),
     Style("clothes", "ladder_airer", "train", ladder_airer, ("drying",)),

@@ -8,6 +8,7 @@ axis.
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections.abc import Callable, Sequence
 from typing import TypeVar, Unpack
 
@@ -23,7 +24,8 @@ T = TypeVar("T")
 Range = tuple[float, float]
 Point = tuple[float, float, float]
 
-_SIDES = ((-1, -1), (-1, 1), (1, -1), (1, 1))
+CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))
+"""The signs of x and y at the corners of a rectangle around the origin."""
 MIN_HALF_M = 0.0005
 """Smallest half size of a geom, since MuJoCo requires positive sizes."""
 
@@ -140,6 +142,11 @@ class Workbench:
         """Adds a cylinder (or a capsule) along y."""
         self.rod((xz[0], y[0], xz[1]), (xz[0], y[1], xz[1]), radius, look, solid=solid, round_ends=round_ends)
 
+    def bent_rod(self, path: Sequence[Point], radius: float, look: Look) -> None:
+        """Adds a capsule from each point of a path to the next."""
+        for a, b in itertools.pairwise(path):
+            self.rod(a, b, radius, look, round_ends=True)
+
     def bar(self, a: Point, b: Point, wide: float, thick: float, look: Look, *, solid: bool = True) -> None:
         """Adds a box from a to b, `wide` as nearly along y as possible and `thick` across; full lengths."""
         middle, half, rotation = _between(a, b)
@@ -166,7 +173,7 @@ class Workbench:
         self, x: Range, y: Range, z: Range, thick: float, look: Look, *, splay: float = 0.0, round_: bool = False
     ) -> None:
         """Adds four legs with tops in the corners of the x, y rectangle and feet `splay` metres further out."""
-        for sx, sy in _SIDES:
+        for sx, sy in CORNERS:
             top = (x[0] if sx < 0 else x[1], y[0] if sy < 0 else y[1], z[1])
             foot = (top[0] + sx * splay, top[1] + sy * splay, z[0])
             if splay or round_:

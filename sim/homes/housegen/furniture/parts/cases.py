@@ -1,4 +1,4 @@
-"""Tops and bodies of tables and cabinets, worktops with their sink and hob, and objects on shelves."""
+"""Tops and bodies of tables and cabinets, and worktops with their sink and hob."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts.looks import glass_edge, tinted_glass
-from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, around, footprint, inset
+from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, around, footprint, inset, on_side
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 GLASS_EDGE_M = 0.008
@@ -23,10 +23,9 @@ def slab(w: Workbench, depth: float, width: float, z: Range, look: Look) -> tupl
         look = tinted_glass(look)
         rim = (z[0] - 0.001, z[1] + 0.001)
         for end in BOTH_SIDES:
-            a, b = sorted((end * 0.5 * depth, end * (0.5 * depth - GLASS_EDGE_M)))
-            w.box((a, b), y, rim, glass_edge(look), solid=False)
-            a, b = sorted((end * 0.5 * width, end * (0.5 * width - GLASS_EDGE_M)))
-            w.box(inset(x, GLASS_EDGE_M), (a, b), rim, glass_edge(look), solid=False)
+            w.box(on_side(end, 0.5 * depth - GLASS_EDGE_M, 0.5 * depth), y, rim, glass_edge(look), solid=False)
+            span = on_side(end, 0.5 * width - GLASS_EDGE_M, 0.5 * width)
+            w.box(inset(x, GLASS_EDGE_M), span, rim, glass_edge(look), solid=False)
     w.box(x, y, z, look)
     w.top(inset(x, 0.05), inset(y, 0.05), z[1])
     return x, y

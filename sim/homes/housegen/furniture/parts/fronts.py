@@ -1,7 +1,6 @@
 """Fronts of doors and drawers with their handles. A front lies on the plane x and faces +x.
 
-The `plain_` functions make flat fronts with one of four handles; the `styled_` functions choose the design of the
-front and the handle from more kinds. Their sizes differ, so that the furniture of both is different.
+All fronts are flat, with one of four handles.
 """
 
 from __future__ import annotations

@@ -67,10 +67,10 @@ def blade(path: Sequence[Point], width: float, shares: Sequence[float] = OVAL) -
     return _outwards(np.array(vertices), faces)
 
 
-def frond(path: Sequence[Point], leaflet: float, drop: float = 0.5) -> Body:
+def frond(path: Sequence[Point], leaflet: float) -> Body:
     """Returns a palm leaf: a row of narrow leaflets on both sides of a bent rib.
 
-    Each leaflet is `leaflet` long, those at both ends shorter, and hangs by `drop` times its length.
+    Each leaflet is `leaflet` long, those at both ends shorter, and hangs by half its length.
     """
     points = np.asarray(path, float)
     level = np.array([points[0, 1] - points[-1, 1], points[-1, 0] - points[0, 0], 0.0])
@@ -82,7 +82,7 @@ def frond(path: Sequence[Point], leaflet: float, drop: float = 0.5) -> Body:
         along = points[i + 1] - points[i]
         long = leaflet * math.sin(math.pi * (i + 0.6) / (count + 0.8))
         for way in (-1, 1):
-            tip = points[i] + long * (0.75 * way * side + 0.6 * along / np.linalg.norm(along)) - (0.0, 0.0, drop * long)
+            tip = points[i] + long * (0.75 * way * side + 0.6 * along / np.linalg.norm(along)) - (0.0, 0.0, 0.5 * long)
             body, part = _outwards(
                 np.array([points[i], points[i] + 0.85 * along, tip, points[i] + 0.4 * along + (0.0, 0.0, 0.012)]),
                 [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)],
@@ -92,27 +92,24 @@ def frond(path: Sequence[Point], leaflet: float, drop: float = 0.5) -> Body:
     return np.array(vertices), faces
 
 
-def cut_leaf(
-    at: Point, along: ArrayLike, outline: Sequence[tuple[float, float]], length: float, *, centre: float = 0.3,
-    cup: float = 0.25,
-) -> Body:  # fmt: skip
-    """Returns a leaf with a given outline, star-shaped about (`centre`, 0), from its stalk at `at`.
+def cut_leaf(at: Point, along: ArrayLike, outline: Sequence[tuple[float, float]], length: float) -> Body:
+    """Returns a leaf with a given outline, star-shaped about (0.3, 0), from its stalk at `at`.
+
+    Points at its side hang below the middle by a quarter of their distance from it.
 
     Args:
         at: where the stalk ends.
         along: direction of the leaf from the stalk to its tip.
         outline: points (share of the length along the leaf, share of the length to its left), counter-clockwise.
         length: length of the leaf.
-        centre: where the middle vertex is, as a share of the length.
-        cup: by how much points at the side hang below the middle, as a share of their distance from it.
     """
     axis = np.asarray(along, float) / np.linalg.norm(along)
     side = np.cross((0.0, 0.0, 1.0), axis)
     side /= np.linalg.norm(side)
     up = np.cross(axis, side)
     flat = np.asarray(outline)
-    rim = [length * (u * axis + v * side - cup * (abs(v) + 0.5 * max(0.0, u - centre)) * up) for u, v in flat]
-    middle = length * centre * axis
+    rim = [length * (u * axis + v * side - 0.25 * (abs(v) + 0.5 * max(0.0, u - 0.3)) * up) for u, v in flat]
+    middle = length * 0.3 * axis
     vertices = np.array([*rim, middle + 0.02 * length * up, middle - 0.02 * length * up]) + np.asarray(at)
     n = len(rim)
     faces = []

@@ -28,6 +28,6 @@ def glass_edge(glass: Look) -> Look:
     return dataclasses.replace(glass, rgba=(round(0.45 * r, 3), round(0.62 * g, 3), round(0.58 * b, 3), 1.0))
 
 
-def wood_look(w: Workbench, painted: float = 0.45) -> Look:
-    """Returns lacquer with the probability `painted`, otherwise plain wood."""
-    return w.look("lacquer") if w.chance(painted) else w.look("wood")
+def wood_look(w: Workbench) -> Look:
+    """Returns lacquer with the probability 0.45, otherwise plain wood."""
+    return w.look("lacquer") if w.chance(0.45) else w.look("wood")

@@ -8,7 +8,7 @@ the colour of one column. Another palette shows the same mesh in other colours.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -104,6 +104,17 @@ class PaletteMesh:
         texture = np.column_stack([across, np.zeros(len(vertices))])
         content = np.rint(vertices * 1e4).astype("<i4").tobytes() + faces.astype("<i4").tobytes() + texture.tobytes()
         return MeshShape(f"s_{hashlib.sha1(content).hexdigest()[:8]}", vertices, faces, texture)
+
+
+def in_one_mesh(build: Callable[[Workbench, PaletteMesh], None], *, solid: bool = False) -> Callable[[Workbench], None]:
+    """Returns the `build` of a style whose parts are added to one mesh; if solid, it collides as its convex hull."""
+
+    def built(w: Workbench) -> None:
+        mesh = PaletteMesh()
+        build(w, mesh)
+        mesh.put(w, solid=solid)
+
+    return built
 
 
 def _revolved(rings: Sequence[tuple[float, float]], sides: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
