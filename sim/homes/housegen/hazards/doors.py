@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from sim.homes.housegen.hazards.floor_map import FloorMap
 from sim.homes.housegen.hazards.hazard import Sketch, box
 
 GAP_M = (0.50, 0.62)
@@ -13,12 +12,12 @@ HALF_M, FLOOR_GAP_M, HIGH_M = 0.02, 0.008, 2.06
 """Half the thickness of a leaf, its lower and its upper edge."""
 
 
-def jammed_leaf(s: Sketch, floor: FloorMap) -> bool:
+def jammed_leaf(s: Sketch) -> bool:
     """Hangs a leaf that is swollen or blocked into a doorway that has none."""
-    clear_m = s.move_into_bare_doorway(floor.openings)
-    if clear_m is None:
+    opening = s.draw_opening("door", bare=True)
+    if opening is None:
         return False
-    width = clear_m - 0.02
+    width = s.move_into(opening) - 0.02
     at, yaw_rad = s.draw_hinge(width, 2.0 * math.asin(float(s.rng.uniform(*GAP_M)) / (2.0 * width)))
     wood, metal = s.look("wood"), s.looks["frame"]
     leaf = [box((0.0, width), (-HALF_M, HALF_M), (FLOOR_GAP_M, HIGH_M), wood)]

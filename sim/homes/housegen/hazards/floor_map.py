@@ -28,6 +28,8 @@ SPARE_M = 0.27
 """Half the width of the paths that must stay: the robot's radius of 0.18 m and 9 cm to spare."""
 TIGHT_M = 0.20
 """Half the width of narrower paths, to places that had no wider one before."""
+MOST_FREE_M = 4.0
+"""Length over which straight lines are followed."""
 _LOST_M2 = {TIGHT_M: 0.12, SPARE_M: 0.4}
 """Largest area that a hazard may disconnect beyond the floor right next to it, for each half width."""
 _DRAWN_RADIUS_M = 0.018
@@ -87,13 +89,13 @@ class FloorMap:
             return None
         return self.frame.to_metres(descend(field, *begin))
 
-    def free_length_m(self, x_m: float, y_m: float, yaw_rad: float, most_m: float = 4.0) -> float:
-        """Returns how far a straight line from a position stays free up to the height of a pane, metres."""
-        steps = np.arange(0.0, most_m, 0.5 * CELL_M)
+    def free_length_m(self, x_m: float, y_m: float, yaw_rad: float) -> float:
+        """Returns how far a line from a position stays free up to the height of a pane, `MOST_FREE_M` at most."""
+        steps = np.arange(0.0, MOST_FREE_M, 0.5 * CELL_M)
         points = np.array([x_m, y_m]) + steps[:, None] * np.array([np.cos(yaw_rad), np.sin(yaw_rad)])
         cells = np.clip(self.frame.to_cells(points), 0, np.array(self.frame.shape) - 1)
         hits = np.flatnonzero(self._tall_solid[cells[:, 0], cells[:, 1]])
-        return float(steps[hits[0]]) if hits.size else most_m
+        return float(steps[hits[0]]) if hits.size else MOST_FREE_M
 
     def try_add(self, outlines: Sequence[NDArray[np.float64]], apart_m: float) -> bool:
         """Adds a hazard with these outlines; returns False, and changes nothing, if it does not fit.

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from sim.homes.housegen.furniture.item import Geom, Look
-from sim.homes.housegen.hazards.floor_map import FloorMap
-from sim.homes.housegen.hazards.hazard import Sketch, box
+from sim.homes.housegen.furniture.item import Geom
+from sim.homes.housegen.hazards.hazard import UNSEEN, Sketch, box
 
 GLASS_M, HIGH_M, PROFILE_M = 0.012, 2.05, 0.03
 """Thickness and height of panes, and the thickness of their frames."""
@@ -15,30 +14,26 @@ DOTS_M, DOT_M = 1.42, 0.03
 WAY_M = (0.58, 0.76)
 """Width of the passage that stays open next to a pane."""
 LEAF_RAD = (math.radians(55.0), math.radians(100.0))
-_CLEAR = Look()
 
 
-def partition(s: Sketch, floor: FloorMap) -> bool:
+def partition(s: Sketch) -> bool:
     """Adds a pane across the whole room, with a passage at the end that is farther from the path."""
     s.align()
-    return _across(s, floor, "window")
+    return _across(s, "window")
 
 
-def sliding_door(s: Sketch, floor: FloorMap) -> bool:
+def sliding_door(s: Sketch) -> bool:
     """Adds fixed and sliding panes that close a wide opening up to a passage at one end."""
-    wide = [opening for opening in floor.openings if opening.kind in ("opening", "open")]
-    if not wide:
+    opening = s.draw_opening("opening", "open")
+    if opening is None:
         return False
-    opening = wide[int(s.rng.integers(len(wide)))]
     low, high = opening.clear_span()
-    at = float(s.rng.uniform(low + 0.3, high - 0.3))
-    s.move_into(opening, at)
-    return _across(s, floor, "door")
+    s.move_into(opening, float(s.rng.uniform(low + 0.3, high - 0.3)))
+    return _across(s, "door")
 
 
-def screen(s: Sketch, floor: FloorMap) -> bool:
+def screen(s: Sketch) -> bool:
     """Adds a free-standing screen across the path, often with wings at its ends towards the robot's approach."""
-    del floor
     s.align()
     half = 0.5 * float(s.rng.uniform(1.2, 2.2))
     shift = float(s.rng.uniform(-0.5, 0.5)) * half
@@ -51,12 +46,12 @@ def screen(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def door_leaf(s: Sketch, floor: FloorMap) -> bool:
+def door_leaf(s: Sketch) -> bool:
     """Adds a glass leaf to a doorway that has none: ajar, or closed where another route exists."""
-    clear_m = s.move_into_bare_doorway(floor.openings)
-    if clear_m is None:
+    opening = s.draw_opening("door", bare=True)
+    if opening is None:
         return False
-    width = clear_m - 0.09
+    width = s.move_into(opening) - 0.09
     if s.rng.random() < 0.3:
         _leaf(s, width, (0.0, -0.5 * width), math.pi / 2)
     else:
@@ -67,9 +62,9 @@ def door_leaf(s: Sketch, floor: FloorMap) -> bool:
 DESIGNS = (partition, partition, sliding_door, sliding_door, screen, door_leaf)
 
 
-def _across(s: Sketch, floor: FloorMap, category: str) -> bool:
+def _across(s: Sketch, category: str) -> bool:
     """Adds a pane across the free width at the sketch, often with a wing at its free end."""
-    free_m = {side: floor.free_length_m(s.x_m, s.y_m, s.yaw_rad + side * math.pi / 2) for side in (1, -1)}
+    free_m = {side: s.floor.free_length_m(s.x_m, s.y_m, s.yaw_rad + side * math.pi / 2) for side in (1, -1)}
     way_m = float(s.rng.uniform(*WAY_M))
     near = 1 if free_m[1] <= free_m[-1] else -1
     end_m = free_m[-near] - way_m
@@ -92,7 +87,7 @@ def _pane(s: Sketch, category: str, begin: tuple[float, float], end: tuple[float
     ]
     frame.append(box((0.0, length), (-half, half), (0.0, 0.012), metal, solid=False))
     frame.append(box((0.0, length), (-half, half), (HIGH_M - 0.04, HIGH_M), metal, solid=False))
-    glass = box((PROFILE_M, length - PROFILE_M), (-0.5 * GLASS_M, 0.5 * GLASS_M), (0.0, HIGH_M), _CLEAR)
+    glass = box((PROFILE_M, length - PROFILE_M), (-0.5 * GLASS_M, 0.5 * GLASS_M), (0.0, HIGH_M), UNSEEN)
     s.add(category, [*frame, *_dots(s, length)], (glass,), at=begin, yaw_rad=yaw)
 
 
@@ -103,7 +98,7 @@ def _leaf(s: Sketch, width: float, hinge: tuple[float, float], yaw_rad: float) -
         box((0.0, 0.06), (-half - 0.006, half + 0.006), (z, z + 0.09), metal, solid=False) for z in (0.0, 1.9)
     ]
     seen.append(box((width - 0.09, width - 0.065), (-0.05, 0.05), (0.95, 1.25), metal, solid=False))
-    glass = box((0.0, width), (-half, half), (0.0, HIGH_M - 0.05), _CLEAR)
+    glass = box((0.0, width), (-half, half), (0.0, HIGH_M - 0.05), UNSEEN)
     s.add("door", [*seen, *_dots(s, width)], (glass,), at=hinge, yaw_rad=yaw_rad)
 
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
 
 import cv2
 import numpy as np
@@ -14,20 +13,20 @@ from numpy.typing import NDArray
 from sim.core.interface import CLIMB_M
 from sim.homes.housegen.furniture.item import Geom, Item, Look, Pool
 from sim.homes.housegen.furniture.transforms import bounds, matrix_from_euler
+from sim.homes.housegen.hazards.floor_map import FloorMap
 from sim.homes.housegen.mjcf.builder import HouseBuilder
 from sim.homes.housegen.mjcf.merging import collision_geoms
 from sim.homes.housegen.mjcf.movables import Movable, as_movable
 from sim.homes.housegen.mjcf.placed import PlacedItem
 from sim.homes.housegen.mjcf.triangles import facets
-from sim.homes.housegen.structure.openings import HALF_WALL_M, Opening
+from sim.homes.housegen.structure.openings import HALF_WALL_M, Opening, OpeningKind
 from sim.homes.housegen.surfaces.materials import look
-
-if TYPE_CHECKING:
-    from sim.homes.housegen.hazards.floor_map import FloorMap
 
 ROBOT_HEIGHT_M = 0.88
 """Geoms between `CLIMB_M` and this height block the robot."""
 SITE_HEIGHT_M = 2.0
+UNSEEN = Look()
+"""Look of geoms that are not rendered."""
 
 
 @dataclass(frozen=True)
@@ -86,9 +85,10 @@ class Sketch:
         rng: np.random.Generator,
         pool: Pool,
         looks: Mapping[str, Look],
+        floor: FloorMap,
     ) -> None:
         self.kind, self.x_m, self.y_m, self.yaw_rad = kind, x_m, y_m, yaw_rad
-        self.rng, self.looks = rng, looks
+        self.rng, self.looks, self.floor = rng, looks, floor
         self._pool: Pool = pool
         self._parts: list[Part] = []
 
@@ -96,20 +96,22 @@ class Sketch:
         """Turns the sketch to the nearest direction of the walls."""
         self.yaw_rad = round(self.yaw_rad / (math.pi / 2)) * math.pi / 2
 
-    def move_into(self, opening: Opening, at_m: float) -> None:
-        """Moves the sketch to a position along an opening; its +x then crosses the wall."""
+    def draw_opening(self, *kinds: OpeningKind, bare: bool = False) -> Opening | None:
+        """Draws one of the house's openings of these kinds, if `bare` one without a leaf; None if there is none."""
+        found = [o for o in self.floor.openings if o.kind in kinds and not (bare and o.leaf is not None)]
+        return found[int(self.rng.integers(len(found)))] if found else None
+
+    def move_into(self, opening: Opening, at_m: float | None = None) -> float:
+        """Moves the sketch to a position along an opening, or to its middle; its +x then crosses the wall.
+
+        Returns:
+            The clear width of the opening, metres.
+        """
+        low, high = opening.clear_span()
+        at_m = 0.5 * (low + high) if at_m is None else at_m
         level = opening.side in ("north", "south")
         self.x_m, self.y_m = (at_m, opening.line_m) if level else (opening.line_m, at_m)
         self.yaw_rad = (math.pi / 2 if level else 0.0) + (math.pi if self.rng.random() < 0.5 else 0.0)
-
-    def move_into_bare_doorway(self, openings: Sequence[Opening]) -> float | None:
-        """Moves the sketch into a doorway without a leaf; returns its clear width, or None if there is none."""
-        bare = [opening for opening in openings if opening.kind == "door" and opening.leaf is None]
-        if not bare:
-            return None
-        opening = bare[int(self.rng.integers(len(bare)))]
-        low, high = opening.clear_span()
-        self.move_into(opening, 0.5 * (low + high))
         return high - low
 
     def draw_hinge(self, width_m: float, angle_rad: float) -> tuple[tuple[float, float], float]:
@@ -152,14 +154,8 @@ class Sketch:
         return replace(here, x_m=round(x, 4), y_m=round(y, 4), yaw_rad=round(self.yaw_rad + yaw_rad, 4))
 
 
-Design = Callable[[Sketch, "FloorMap"], bool]
+Design = Callable[[Sketch], bool]
 """Adds the objects of one kind of hazard to a sketch; returns False if it does not fit there."""
-
-
-class Family(Protocol):
-    """A module of designs."""
-
-    DESIGNS: tuple[Design, ...]
 
 
 def box(

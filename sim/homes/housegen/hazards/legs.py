@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.item import Geom, Look
-from sim.homes.housegen.hazards.floor_map import FloorMap
 from sim.homes.housegen.hazards.hazard import Sketch, box, post, rod
 
 POLE_M = 0.012
 
 
-def stands(s: Sketch, floor: FloorMap) -> bool:
+def stands(s: Sketch) -> bool:
     """Adds a row of coat or music stands across the path; the gaps between their poles are closed by flat feet."""
-    del floor
     count = int(s.rng.integers(2, 4))
     reach = float(s.rng.uniform(0.30, 0.36))
     gap = 2.0 * reach + float(s.rng.uniform(0.02, 0.12))
@@ -24,9 +22,8 @@ def stands(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def floor_lamp(s: Sketch, floor: FloorMap) -> bool:
+def floor_lamp(s: Sketch) -> bool:
     """Adds a floor lamp on a flat round foot in the middle of the path."""
-    del floor
     metal, radius = s.look("metal"), float(s.rng.uniform(0.24, 0.32))
     foot = Geom("cylinder", (radius, 0.02), (0.0, 0.0, 0.02), metal)
     shade = Geom("cylinder", (0.16, 0.11), (0.0, 0.0, 1.55), s.look("shade"), solid=False)
@@ -34,9 +31,8 @@ def floor_lamp(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def easels(s: Sketch, floor: FloorMap) -> bool:
+def easels(s: Sketch) -> bool:
     """Adds one or two easels with three thin splayed legs across the path."""
-    del floor
     count = int(s.rng.integers(1, 3))
     wood, spread = s.look("wood"), float(s.rng.uniform(0.34, 0.42))
     for i in range(count):
@@ -48,9 +44,8 @@ def easels(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def trestles(s: Sketch, floor: FloorMap) -> bool:
+def trestles(s: Sketch) -> bool:
     """Adds a pair of trestles with spreaders close to the floor."""
-    del floor
     s.align()
     wood, half = s.look("wood"), 0.5 * float(s.rng.uniform(0.7, 0.9))
     gap = float(s.rng.uniform(0.7, 0.85))

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.item import Geom
-from sim.homes.housegen.hazards.floor_map import FloorMap
 from sim.homes.housegen.hazards.hazard import Sketch, box
 
 CARD, PLASTIC, FELT = 0.35, 0.3, 0.25
 """Sliding friction of cardboard, plastic and felt glides."""
 
 
-def toys(s: Sketch, floor: FloorMap) -> bool:
+def toys(s: Sketch) -> bool:
     """Adds two to four toys that are lower than the obstacle band of the agent's map."""
-    del floor
     for i in range(int(s.rng.integers(2, 5))):
         at = (float(s.rng.uniform(-0.35, 0.35)), (i - 1) * 0.3 + float(s.rng.uniform(-0.06, 0.06)))
         turn, paint = float(s.rng.uniform(0.0, math.tau)), s.look("paint")
@@ -35,9 +33,8 @@ def toys(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def carton(s: Sketch, floor: FloorMap) -> bool:
+def carton(s: Sketch) -> bool:
     """Adds an empty cardboard box."""
-    del floor
     x, y = (0.5 * v for v in s.rng.uniform(0.25, 0.42, 2).tolist())
     high, card = float(s.rng.uniform(0.15, 0.32)), s.look("cardboard")
     s.add_movable(
@@ -46,9 +43,8 @@ def carton(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def bin_(s: Sketch, floor: FloorMap) -> bool:
+def bin_(s: Sketch) -> bool:
     """Adds a waste bin or a basket."""
-    del floor
     radius, high = float(s.rng.uniform(0.12, 0.17)), float(s.rng.uniform(0.26, 0.36))
     look = s.look("metal" if s.rng.random() < 0.5 else "plastic")
     rim = Geom("cylinder", (radius + 0.006, 0.012), (0.0, 0.0, high - 0.012), s.look("dark"), solid=False)
@@ -56,9 +52,8 @@ def bin_(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def stool(s: Sketch, floor: FloorMap) -> bool:
+def stool(s: Sketch) -> bool:
     """Adds a light foot stool on four legs."""
-    del floor
     half, high, wood = float(s.rng.uniform(0.15, 0.18)), float(s.rng.uniform(0.34, 0.44)), s.look("wood")
     seat = box((-half, half), (-half, half), (high - 0.04, high), s.look("fabric"))
     legs = [

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from sim.homes.housegen.furniture.item import Geom, Look
-from sim.homes.housegen.hazards.floor_map import FloorMap
-from sim.homes.housegen.hazards.hazard import Sketch, box, post
-
-_CLEAR = Look()
+from sim.homes.housegen.furniture.item import Geom
+from sim.homes.housegen.hazards.hazard import UNSEEN, Sketch, box, post
 
 
-def console(s: Sketch, floor: FloorMap) -> bool:
+def console(s: Sketch) -> bool:
     """Adds a high narrow table; the lower edge of its top is below the top of the robot."""
-    del floor
     return _table(s, (1.2, 1.7), (0.35, 0.5), float(s.rng.uniform(0.79, 0.84)))
 
 
-def low_table(s: Sketch, floor: FloorMap) -> bool:
+def low_table(s: Sketch) -> bool:
     """Adds a low table."""
-    del floor
     return _table(s, (1.1, 1.5), (0.5, 0.7), float(s.rng.uniform(0.36, 0.46)))
 
 
@@ -35,6 +30,6 @@ def _table(s: Sketch, lengths: tuple[float, float], depths: tuple[float, float],
         at = shift + side * (y - 0.015)
         legs += [post(sx * (x - 0.02), at, (0.0, top), 0.012, metal) for sx in (-1, 1)]
         legs.append(box((-x, x), (at - 0.012, at + 0.012), (top - 0.02, top + 0.012), metal))
-    glass = box((-x, x), (shift - y + 0.03, shift + y - 0.03), (top, top + 0.012), _CLEAR)
+    glass = box((-x, x), (shift - y + 0.03, shift + y - 0.03), (top, top + 0.012), UNSEEN)
     s.add("table", legs, (glass,))
     return True

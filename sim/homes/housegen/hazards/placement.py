@@ -87,8 +87,8 @@ def _draw_hazard(
         place = _place_on(rng, path) if path is not None else None
         if place is None:
             continue
-        sketch = Sketch(family, *place, rng, pool, looks)
-        if not design(sketch, floor):
+        sketch = Sketch(family, *place, rng, pool, looks, floor)
+        if not design(sketch):
             continue
         hazard = sketch.finish()
         if floor.try_add(hazard.footprints(), APART_M):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from sim.homes.housegen.hazards.floor_map import FloorMap
 from sim.homes.housegen.hazards.hazard import Sketch, box
 
 HIGH_M = (0.04, 0.08)
@@ -11,9 +10,8 @@ THRESHOLD_M = (0.005, 0.011)
 """Heights that the robot climbs: a higher threshold would close the only door of many rooms."""
 
 
-def plinth(s: Sketch, floor: FloorMap) -> bool:
+def plinth(s: Sketch) -> bool:
     """Adds one long low plinth across the path."""
-    del floor
     s.align()
     half, shift = 0.5 * float(s.rng.uniform(0.7, 1.6)), float(s.rng.uniform(-0.25, 0.25))
     depth, high = float(s.rng.uniform(0.15, 0.4)), float(s.rng.uniform(*HIGH_M))
@@ -21,9 +19,8 @@ def plinth(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def podium(s: Sketch, floor: FloorMap) -> bool:
+def podium(s: Sketch) -> bool:
     """Adds a low podium with a lip all around, as under a reading chair."""
-    del floor
     s.align()
     x, y = 0.5 * float(s.rng.uniform(0.6, 1.1)), 0.5 * float(s.rng.uniform(0.8, 1.5))
     high, wood = float(s.rng.uniform(0.05, 0.08)), s.look("wood")
@@ -32,9 +29,8 @@ def podium(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def planks(s: Sketch, floor: FloorMap) -> bool:
+def planks(s: Sketch) -> bool:
     """Adds two or three boards in the shape of an L or a U, open towards the robot's approach."""
-    del floor
     high, wide = float(s.rng.uniform(*HIGH_M)), float(s.rng.uniform(0.10, 0.16))
     half = 0.5 * float(s.rng.uniform(1.0, 1.7))
     wood = s.look("wood")
@@ -46,15 +42,12 @@ def planks(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-def threshold(s: Sketch, floor: FloorMap) -> bool:
+def threshold(s: Sketch) -> bool:
     """Adds a flat threshold in a doorway; the robot climbs it."""
-    doors = [opening for opening in floor.openings if opening.kind == "door"]
-    if not doors:
+    opening = s.draw_opening("door")
+    if opening is None:
         return False
-    opening = doors[int(s.rng.integers(len(doors)))]
-    low, high = opening.clear_span()
-    s.move_into(opening, 0.5 * (low + high))
-    half, top = 0.5 * (high - low) - 0.005, float(s.rng.uniform(*THRESHOLD_M))
+    half, top = 0.5 * s.move_into(opening) - 0.005, float(s.rng.uniform(*THRESHOLD_M))
     s.add("door", [box((-0.07, 0.07), (-half, half), (0.0, top), s.look("wood"))])
     return True
 

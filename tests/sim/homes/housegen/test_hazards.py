@@ -109,8 +109,8 @@ def test_a_hazard_that_closes_the_only_doorway_is_refused_and_changes_nothing() 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_threshold_lies_in_the_doorway_and_is_low_enough_to_be_climbed(seed: int) -> None:
-    sketch = Sketch("slab", 1.0, 1.0, 0.3, np.random.default_rng(seed), "heldout", {})
-    assert slabs.threshold(sketch, two_rooms())
+    sketch = Sketch("slab", 1.0, 1.0, 0.3, np.random.default_rng(seed), "heldout", {}, two_rooms())
+    assert slabs.threshold(sketch)
     hazard = sketch.finish()
     (part,) = hazard.parts
     assert (part.placed.x_m, part.placed.y_m) == (3.0, 1.95)
