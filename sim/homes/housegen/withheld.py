@@ -37,11 +37,10 @@ def restricted(catalogue: Catalogue, which: Withheld | None) -> Catalogue:
     """Returns the catalogue without the withheld styles, or with them in place of others; None returns it as it is."""
     if which is None:
         return catalogue
-    styles = [style for category in catalogue.categories for style in catalogue.styles(category)]
-    withheld = [style for style in styles if is_withheld(style)]
+    others = [style for style in catalogue.all_styles if not is_withheld(style)]
     if which == "without":
-        return Catalogue(style for style in styles if not is_withheld(style))
-    others = (style for style in styles if not is_withheld(style))
+        return Catalogue(others)
+    withheld = [style for style in catalogue.all_styles if is_withheld(style)]
     kept = (remaining for style in others if (remaining := without_covered(style, withheld)) is not None)
     return Catalogue([*kept, *withheld])
 
@@ -70,7 +69,7 @@ def _drawn(category: str, name: str) -> int:
 
 @functools.lru_cache(maxsize=1)
 def _own() -> frozenset[tuple[str, str]]:
-    return frozenset((s.category, s.name) for category in CATALOGUE.categories for s in CATALOGUE.styles(category))
+    return frozenset((style.category, style.name) for style in CATALOGUE.all_styles)
 
 
 @functools.lru_cache(maxsize=1)

@@ -198,11 +198,10 @@ class FurnitureSource:
         """Returns a style that the home has least often, one that the last calls did not return where `fresh`."""
         placed = self._placed_styles()
         names = [style.name for style in self._catalogue.styles(category, self.pool, use)]
-        others = [style.name for style in self._catalogue.styles(category, self.pool, use)]
         tried = self._tried.setdefault(key, set())
         if not fresh:
             tried.clear()
-        untried = [n for n in names if n not in tried] or [n for n in others if n not in tried] or names
+        untried = [name for name in names if name not in tried] or names
         if category == "objects" and len(self._small_styles) >= MAX_SMALL_STYLES:
             untried = [name for name in untried if name in self._small_styles] or untried
 

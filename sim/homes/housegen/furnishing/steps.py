@@ -21,8 +21,6 @@ from sim.world.room_arrangement import FROM_FIRE_M, SCREEN_FRONT_M
 
 RUNNER_M = 1.0
 """Rugs narrower than this are runners."""
-AISLE_M = 0.75
-"""Floor kept free in front of worktops and appliances."""
 ROW_GAP_M = 0.004
 BESIDE_M = 0.05
 """Gap between an item and the one that it is placed beside."""
@@ -60,14 +58,12 @@ def place(
     return None
 
 
-def hang(
-    layout: RoomLayout, source: FurnitureSource, category: str, *uses: str, sides: Sequence[Side] | None = None
-) -> Placement | None:
-    """Hangs an item on one of the walls given, tried in this order, or on any wall."""
+def hang(layout: RoomLayout, source: FurnitureSource, category: str, *uses: str) -> Placement | None:
+    """Hangs an item on any wall."""
     item = source.make(category, *(uses or _WALL_USES.get(category, ())))
     if item is None or item.mount != "wall":
         return None
-    return hang_on_wall(layout, source.rng, item, sides=sides, over_floor=category == "clothes")
+    return hang_on_wall(layout, source.rng, item, over_floor=category == "clothes")
 
 
 def hang_above(layout: RoomLayout, source: FurnitureSource, host: Placement, category: str) -> Placement | None:
@@ -176,7 +172,7 @@ def put_on_top(
     uses = {
         "lighting": ("table",),
         "objects": (source.pick(top_uses(layout, source, host)), "top"),
-        "plant": ("table", "small", "top"),
+        "plant": ("top",),
         "appliances": ("microwave",),
     }
     for category, probability in zip(categories, chances, strict=True):
@@ -200,7 +196,7 @@ def top_uses(layout: RoomLayout, source: FurnitureSource, host: Placement) -> tu
 
 
 def place_row(
-    layout: RoomLayout, source: FurnitureSource, items: Sequence[Item], side: Side, *, front_m: float = AISLE_M
+    layout: RoomLayout, source: FurnitureSource, items: Sequence[Item], side: Side, *, front_m: float
 ) -> list[Placement]:
     """Places items side by side along a wall, in this order or in reverse; an empty list if not all fit."""
     forwards, backwards = list(items), list(reversed(items))

@@ -77,6 +77,11 @@ class Catalogue:
         """All categories that have a style."""
         return tuple(self._by_category)
 
+    @property
+    def all_styles(self) -> tuple[Style, ...]:
+        """The styles of all categories."""
+        return tuple(itertools.chain(*self._by_category.values()))
+
     def styles(self, category: str, pool: Pool | None = None, use: str | None = None) -> tuple[Style, ...]:
         """Returns the styles of a category, restricted to those of a pool and a use if these are given.
 
@@ -96,7 +101,7 @@ class Catalogue:
         Raises:
             ConfigError: the catalogue has a style of the same category and name.
         """
-        return Catalogue(itertools.chain(*self._by_category.values(), styles))
+        return Catalogue([*self.all_styles, *styles])
 
     def replacing(self, category: str, *styles: Style) -> Catalogue:
         """Returns a new catalogue in which a category has these styles and no others.

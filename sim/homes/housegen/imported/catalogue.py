@@ -85,11 +85,10 @@ def _models(folder: Path, split: ModelSplit) -> tuple[Model, ...]:
 @functools.lru_cache(maxsize=8)
 def _catalogue(folder: Path, split: ModelSplit, pool: Pool, alone: bool) -> Catalogue:
     models = _models(folder, split)
-    styles = [style_of(folder, model, "heldout" if pool == "heldout" else "train") for model in models]
+    styles = [style_of(folder, model, pool) for model in models]
     if not alone:
         return CATALOGUE.with_styles(*styles)
-    own = (style for category in CATALOGUE.categories for style in CATALOGUE.styles(category))
-    kept = (remaining for style in own if (remaining := without_covered(style, models)) is not None)
+    kept = (remaining for style in CATALOGUE.all_styles if (remaining := without_covered(style, models)) is not None)
     return Catalogue([*kept, *styles])
 
 

@@ -26,7 +26,6 @@ class StructureLooks:
     floors: Mapping[str, Look]
     """Looks by room name."""
     ceiling: Look
-    outside: Look
     trim: Look
     """Baseboards and window frames."""
     door: Look

@@ -61,7 +61,7 @@ def draw_time(rng: np.random.Generator) -> str:
 
 def draw_views(rng: np.random.Generator, pool: Pool, time: str) -> dict[Side, Look]:
     """Returns the outside view of the windows on each side; opposite sides of a home may differ."""
-    scenes = VIEWS["heldout" if pool == "heldout" else "train"]
+    scenes = VIEWS[pool]
     sides: tuple[Side, ...] = ("north", "east", "south", "west")
     return {side: _view(scenes[int(rng.integers(len(scenes)))], time) for side in sides}
 

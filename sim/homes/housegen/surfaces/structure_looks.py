@@ -13,7 +13,6 @@ from sim.homes.housegen.surfaces import materials
 from sim.homes.housegen.surfaces.lighting import draw_time, draw_views
 
 TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
-OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
 WALLPAPER_ROOMS = frozenset(("living_room", "bedroom", "dining_room", "studio"))
 """Rooms that may have patterned wallpaper; one room of a home at most."""
 MAX_CHROMA = 0.25
@@ -23,7 +22,6 @@ MAX_CHROMA = 0.25
 def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> StructureLooks:
     """Returns paint and floors by room; rooms without a wall between them share theirs."""
     walls = {}
-    paint = "heldout" if pool == "heldout" else "train"
     main_wall = _wall_look(rng, pool, "hallway")
     shared = _open_rooms(plan)
     has_wallpaper = False
@@ -32,12 +30,12 @@ def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) 
         has_wallpaper = has_wallpaper or _is_wallpaper(own)
         walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
     floors = _floors(rng, plan, pool)
-    trim = Look(TRIM[paint], specular=0.2)
+    trim = Look(TRIM[pool], specular=0.2)
     time = draw_time(rng)
     door = materials.look("wood", rng, pool) if rng.random() < 0.5 else materials.look("lacquer", rng, pool)
     frame = trim if rng.random() < 0.6 else door
     return StructureLooks(
-        walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[paint]), trim, door,
+        walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), trim, door,
         frame, materials.look("metal", rng, pool), draw_views(rng, pool, time), time,
     )  # fmt: skip
 

@@ -107,7 +107,7 @@ def put_partly_under(
     geoms = collision_geoms(item)
     for step in range(int(out_m / TUCK_STEP_M) + 1):
         placement = floor_placement(item, x_m - c * TUCK_STEP_M * step, y_m - s * TUCK_STEP_M * step, yaw_rad)
-        if boxes_touch(geom_boxes(geoms, placement.placed), host_boxes, 0.015):
+        if boxes_touch(geom_boxes(geoms, placement.placed), host_boxes):
             continue
         return placement if layout.try_put(placement, ignore=host.rect) else None
     return None

@@ -13,6 +13,9 @@ from sim.homes.housegen.furniture.item import Geom, Item
 from sim.homes.housegen.furniture.transforms import euler_from_matrix, geom_bounds, matrix_from_euler
 from sim.homes.housegen.mjcf.placed import PlacedItem
 
+TOUCH_M = 0.015
+"""Items that are nearer than this touch each other."""
+
 
 @dataclass(frozen=True)
 class Placement:
@@ -58,7 +61,7 @@ def geom_boxes(geoms: Sequence[Geom], placed: PlacedItem) -> NDArray[np.float64]
     return np.array(boxes).reshape(-1, 6)
 
 
-def boxes_touch(a: NDArray[np.float64], b: NDArray[np.float64], margin_m: float) -> bool:
-    """Returns whether any box of `a` is nearer than `margin_m` to any box of `b` along all three axes."""
+def boxes_touch(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
+    """Returns whether any box of `a` is nearer than `TOUCH_M` to any box of `b` along all three axes."""
     gap = np.maximum(a[:, None, :3] - b[None, :, 3:], b[None, :, :3] - a[:, None, 3:])
-    return bool((gap.max(axis=2) < margin_m).any())
+    return bool((gap.max(axis=2) < TOUCH_M).any())
