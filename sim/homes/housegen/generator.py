@@ -29,7 +29,7 @@ from sim.homes.housegen.furniture.catalogue import Catalogue
 from sim.homes.housegen.ground import lay_ground
 from sim.homes.housegen.hazards import PlacedHazard, draw_hazards
 from sim.homes.housegen.mjcf.builder import HouseBuilder
-from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
+from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem
 from sim.homes.housegen.structure.building import build_structure
 from sim.homes.housegen.structure.openings import (
     HALF_WALL_M,
@@ -246,7 +246,7 @@ def _build(draft: _Draft, config: HouseConfig) -> HouseBuilder:
     builder = HouseBuilder(config.name)
     builder.add_ground(draft.plan.bounds.grown(OUTER_WALL_M))
     for room in draft.plan.rooms:
-        builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), draft.ceiling_m)
+        builder.add_room(room.name, room.rect.grown(-HALF_WALL_M), draft.ceiling_m)
     storeys = [(0.0, draft.structure, draft.layouts)]
     if draft.upper is not None:
         draft.upper.add_ground(builder)

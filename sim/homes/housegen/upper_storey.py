@@ -18,7 +18,7 @@ from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import RoomLayout
 from sim.homes.housegen.furniture.item import Pool
 from sim.homes.housegen.mjcf.builder import HouseBuilder
-from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
+from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem
 from sim.homes.housegen.structure.building import build_structure
 from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings, plan_rule_faults
 from sim.homes.housegen.structure.parts import StructureLooks
@@ -88,7 +88,7 @@ class UpperStorey:
         for rect in frame_around(self.plan.bounds.grown(OUTER_WALL_M), self.well):
             builder.add_ground(rect, self.floor_z_m)
         for room in self.plan.rooms:
-            builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), self.ceiling_m, self.floor_z_m)
+            builder.add_room(room.name, room.rect.grown(-HALF_WALL_M), self.ceiling_m, self.floor_z_m)
 
 
 def draw_stairs(rng: np.random.Generator, ground: FloorPlan, openings: Sequence[Opening]) -> Stairs:

@@ -18,7 +18,7 @@ from sim.homes.housegen.floor_plan.plan import FloorPlan
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.furniture.item import Look, Pool
 from sim.homes.housegen.mjcf.builder import HouseBuilder
-from sim.homes.housegen.mjcf.placed import PlacedItem, RoomBox
+from sim.homes.housegen.mjcf.placed import PlacedItem
 from sim.homes.housegen.structure.building import build_structure
 from sim.homes.housegen.structure.doors_windows import OpeningItems, place_leaf
 from sim.homes.housegen.structure.openings import HALF_WALL_M, JAMB_M, OUTER_WALL_M, Leaf, Opening, leaf_keep_out
@@ -89,7 +89,7 @@ def import_house(source: Source, assets: Mapping[str, Asset], config: ProcthorCo
     builder = HouseBuilder(source.name)
     builder.add_ground(layout.plan.bounds.grown(OUTER_WALL_M))
     for room in layout.plan.rooms:
-        builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), layout.ceiling_m)
+        builder.add_room(room.name, room.rect.grown(-HALF_WALL_M), layout.ceiling_m)
     for part in structure:
         builder.add(part)
     for number, item in enumerate(placer.standing):

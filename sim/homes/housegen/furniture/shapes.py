@@ -12,12 +12,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sim.homes.housegen.furniture.item import MeshShape
 
 MAX_VERTICES = 250
 """Limit for one mesh; it keeps the XML of a house small."""
+BOX_CORNERS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+BOX_FACES = np.array(
+    [
+        tri
+        for a, b, c, d in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+        for tri in ((a, b, c), (a, c, d))
+    ],
+    dtype=np.int32,
+)
+"""Corners (8, 3) of the cube of edge 2 about the origin, and its triangles (12, 3), counter-clockwise from outside."""
 
 
 @dataclass(frozen=True)
@@ -39,20 +49,28 @@ def named_mesh(kind: str, vertices_m: ArrayLike, faces: ArrayLike = ()) -> MeshS
     Raises:
         ValueError: more than `MAX_VERTICES` vertices.
     """
+    mesh = hashed_mesh(kind, vertices_m, faces)
+    if len(mesh.vertices_m) > MAX_VERTICES:
+        raise ValueError(f"Mesh '{kind}' has {len(mesh.vertices_m)} vertices; at most {MAX_VERTICES} are allowed.")
+    return mesh
+
+
+def hashed_mesh(
+    kind: str, vertices_m: ArrayLike, faces: ArrayLike, texture_uv: NDArray[np.float64] | None = None
+) -> MeshShape:
+    """Returns a mesh of any number of vertices (n, 3) and faces (m, 3); its name contains a hash of its content."""
     vertices = np.round(np.asarray(vertices_m, dtype=np.float64), 4) + 0.0  # + 0.0 turns -0.0 into 0.0
     triangles = np.asarray(faces, dtype=np.int32).reshape(-1, 3)
-    if len(vertices) > MAX_VERTICES:
-        raise ValueError(f"Mesh '{kind}' has {len(vertices)} vertices; at most {MAX_VERTICES} are allowed.")
     content = np.rint(vertices * 1e4).astype("<i4").tobytes() + triangles.astype("<i4").tobytes()
-    return MeshShape(f"{kind}_{hashlib.sha1(content).hexdigest()[:8]}", vertices, triangles)
+    content += b"" if texture_uv is None else texture_uv.tobytes()
+    return MeshShape(f"{kind}_{hashlib.sha1(content).hexdigest()[:8]}", vertices, triangles, texture_uv)
 
 
 def chamfered_box(size_m: tuple[float, float, float], chamfer_m: float) -> MeshShape:
     """Returns a box of full size `size_m` about the origin with edges cut off by `chamfer_m`."""
     half = 0.5 * np.asarray(size_m)
     cut = np.minimum(chamfer_m, 0.98 * half)
-    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    corners = [signs * np.where(np.arange(3) == axis, half, half - cut) for axis in range(3)]
+    corners = [BOX_CORNERS * np.where(np.arange(3) == axis, half, half - cut) for axis in range(3)]
     return named_mesh("chamfer", np.vstack(corners))
 
 

@@ -25,6 +25,17 @@ def matrix_from_euler(x_rad: float, y_rad: float, z_rad: float) -> NDArray[np.fl
     )
 
 
+def roll_tilt_turn(roll_rad: float, tilt_rad: float, turn_rad: float) -> NDArray[np.float64]:
+    """Returns the (3, 3) matrix of a rotation about x, then the new y, then the item's vertical axis."""
+    return matrix_from_euler(0.0, 0.0, turn_rad) @ matrix_from_euler(roll_rad, tilt_rad, 0.0)
+
+
+def rounded_point(point: Sequence[float] | NDArray) -> tuple[float, float, float]:
+    """Returns a position rounded to 0.1 mm, without negative zeros."""
+    x, y, z = (round(float(v), 4) + 0.0 for v in point)
+    return x, y, z
+
+
 def euler_from_matrix(rotation: NDArray) -> tuple[float, float, float]:
     """Returns the angles that `matrix_from_euler` takes, rounded to 1e-4 rad."""
     y = math.asin(max(-1.0, min(1.0, float(rotation[0, 2]))))

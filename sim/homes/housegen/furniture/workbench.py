@@ -16,7 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.homes.housegen.furniture.item import Child, Geom, Hints, Item, Look, MeshShape, Mount, Pool, Shape, Surface
-from sim.homes.housegen.furniture.transforms import bounds, euler_from_matrix, matrix_from_euler
+from sim.homes.housegen.furniture.transforms import (
+    bounds,
+    euler_from_matrix,
+    matrix_from_euler,
+    roll_tilt_turn,
+    rounded_point,
+)
 from sim.homes.housegen.surfaces import materials
 from sim.homes.housegen.surfaces.textures import TEXTURES
 
@@ -102,7 +108,7 @@ class Workbench:
     ) -> None:  # fmt: skip
         """Adds a geom of any shape: half sizes, centre, rotation matrix (3, 3)."""
         half = tuple(round(max(float(s), MIN_HALF_M), 4) for s in size)
-        self._geoms.append(Geom(shape, half, _rounded(at), look, euler_from_matrix(rotation), solid, mesh))
+        self._geoms.append(Geom(shape, half, rounded_point(at), look, euler_from_matrix(rotation), solid, mesh))
 
     def box(
         self, x: Range, y: Range, z: Range, look: Look, *, solid: bool = True, tilt: float = 0.0, turn: float = 0.0,
@@ -111,7 +117,7 @@ class Workbench:
         """Adds the box with these ranges, rolled about x, then tilted about y (+: top forward), then turned about z."""
         at = tuple(0.5 * (lo + hi) for lo, hi in (x, y, z))
         half = np.array([0.5 * abs(hi - lo) for lo, hi in (x, y, z)])
-        rotation = matrix_from_euler(0.0, 0.0, turn) @ matrix_from_euler(roll, tilt, 0.0)
+        rotation = roll_tilt_turn(roll, tilt, turn)
         if look.texture is not None:
             axes = _grain_axes(half, upright=TEXTURES[look.texture].upright)
             rotation, half = rotation @ axes, np.abs(axes.T @ half)
@@ -165,7 +171,7 @@ class Workbench:
         turn: float = 0.0,
     ) -> None:  # fmt: skip
         """Adds a mesh without texture, its origin at `at`, rolled about x, then tilted about y, then turned about z."""
-        rotation = matrix_from_euler(0.0, 0.0, turn) @ matrix_from_euler(roll, tilt, 0.0)
+        rotation = roll_tilt_turn(roll, tilt, turn)
         plain = dataclasses.replace(look, texture=None)
         self.add("mesh", (), at, rotation, plain, solid=solid, mesh=shape)
 
@@ -187,7 +193,7 @@ class Workbench:
         """Adds a box that collides and is not rendered; an item that has one has no other collision geoms."""
         at = tuple(0.5 * (lo + hi) for lo, hi in (x, y, z))
         half = tuple(round(max(0.5 * (hi - lo), MIN_HALF_M), 4) for lo, hi in (x, y, z))
-        self._collision_geoms.append(Geom("box", half, _rounded(at), Look()))
+        self._collision_geoms.append(Geom("box", half, rounded_point(at), Look()))
 
     # ---- surfaces, children and the result ---------------------------------------------------------------------
 
@@ -202,7 +208,7 @@ class Workbench:
 
     def put(self, item: Item, at: Point, yaw: float = 0.0) -> None:
         """Adds another item as a child, with its own label."""
-        self._children.append(Child(item, _rounded(at), round(yaw, 4)))
+        self._children.append(Child(item, rounded_point(at), round(yaw, 4)))
 
     def finish(self, category: str, style: str, mount: Mount, *, walk_over: bool = False) -> Item:
         """Returns the item with its origin at the middle of the footprint, the surface of the wall, or the ceiling."""
@@ -214,14 +220,14 @@ class Workbench:
         size = tuple(float(s) for s in np.round(high - low, 4))
         return Item(
             category=category, style=style, size_m=size, mount=mount,  # type: ignore[arg-type]
-            geoms=tuple(dataclasses.replace(g, pos_m=_rounded(np.add(g.pos_m, shift))) for g in self._geoms),
-            children=tuple(dataclasses.replace(c, pos_m=_rounded(np.add(c.pos_m, shift))) for c in self._children),
+            geoms=tuple(dataclasses.replace(g, pos_m=rounded_point(np.add(g.pos_m, shift))) for g in self._geoms),
+            children=tuple(dataclasses.replace(c, pos_m=rounded_point(np.add(c.pos_m, shift))) for c in self._children),
             surfaces=tuple(
-                dataclasses.replace(s, centre_m=_rounded(np.add(s.centre_m, shift))) for s in self._surfaces
+                dataclasses.replace(s, centre_m=rounded_point(np.add(s.centre_m, shift))) for s in self._surfaces
             ),
             mount_height_m=self.mount_height_m, mass_kg=self.mass_kg, walk_over=walk_over,
             collision_geoms=tuple(
-                dataclasses.replace(g, pos_m=_rounded(np.add(g.pos_m, shift))) for g in self._collision_geoms
+                dataclasses.replace(g, pos_m=rounded_point(np.add(g.pos_m, shift))) for g in self._collision_geoms
             ),
         )  # fmt: skip
 
@@ -258,8 +264,3 @@ def _grain_axes(half: NDArray, *, upright: bool) -> NDArray[np.float64]:
         order = np.array([front, 1 - front, 2])
     z, y = np.eye(3)[order[0]], np.eye(3)[order[2]]
     return np.column_stack([np.cross(y, z), y, z])
-
-
-def _rounded(point: Sequence[float] | NDArray) -> Point:
-    x, y, z = (round(float(v), 4) + 0.0 for v in point)
-    return (x, y, z)

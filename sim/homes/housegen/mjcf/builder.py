@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -14,11 +15,12 @@ from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.furniture.item import Geom, Item, Look, MeshShape
 from sim.homes.housegen.furniture.transforms import bounds
 from sim.homes.housegen.mjcf.appearance import facts_of
-from sim.homes.housegen.mjcf.merging import Assembly, assemble
+from sim.homes.housegen.mjcf.merging import assemble
 from sim.homes.housegen.mjcf.movables import ROLLING_M, Movable, split_movable
-from sim.homes.housegen.mjcf.placed import Hinge, Lamp, PlacedItem, RoomBox
+from sim.homes.housegen.mjcf.placed import Hinge, Lamp, PlacedItem
 from sim.homes.housegen.surfaces.materials import texture_file, texture_mapping
 
+T = TypeVar("T")
 TEXTURE_DIR = "../textures"
 """Folder of the textures, relative to the house file."""
 AMBIENT, HEADLIGHT = 0.36, 0.12
@@ -65,14 +67,14 @@ class HouseBuilder:
         self._collision.geom.group = 3
         self._spec.default.mesh.scale = [MESH_UNIT_M] * 3
         self._spec.default.mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL  # some show only their front
-        self._assemblies: dict[int, tuple[Item, Assembly]] = {}
+        self._assembly = _OncePerItem(assemble)
+        self._split = _OncePerItem(split_movable)
+        self._facts = _OncePerItem(lambda item: facts_of(item).text())
         self._frictions: dict[str, mujoco.MjsDefault] = {}
-        self._splits: dict[int, tuple[Item, tuple[Item | None, tuple[Movable, ...]]]] = {}
         self._counts: dict[str, int] = {}
         self._assets = AssetTable(self._spec)
         self.styles: dict[str, str] = {}
         """Style of each item by the name of its body, which is the label of its instance."""
-        self._facts: dict[int, tuple[Item, str]] = {}
 
     @property
     def spec(self) -> mujoco.MjSpec:
@@ -115,12 +117,6 @@ class HouseBuilder:
         for movable in movables:
             self.add_movable_body(movable, placed)
 
-    def _split(self, item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
-        """Returns the static and the movable parts of an item; computed once for each design."""
-        if id(item) not in self._splits:
-            self._splits[id(item)] = (item, split_movable(item))
-        return self._splits[id(item)][1]
-
     def add_ground(self, rect: Rect, z_m: float = 0.0) -> None:
         """Adds an invisible slab that carries the wheels, its top at `z_m`."""
         x, y = rect.centre
@@ -129,14 +125,9 @@ class HouseBuilder:
             size=[_r(rect.width_m / 2), _r(rect.depth_m / 2), 0.05], pos=[_r(x), _r(y), _r(z_m - 0.05)],
         )  # fmt: skip
 
-    def add_room(self, room: RoomBox, height_m: float, z_m: float = 0.0) -> None:
-        """Adds the site that marks a room with its floor at `z_m`."""
-        x, y = room.rect.centre
-        self._spec.worldbody.add_site(
-            name=room.name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4,
-            pos=[_r(x), _r(y), _r(z_m + height_m / 2)],
-            size=[_r(room.rect.width_m / 2), _r(room.rect.depth_m / 2), _r(height_m / 2)],
-        )  # fmt: skip
+    def add_room(self, name: str, rect: Rect, height_m: float, z_m: float = 0.0) -> None:
+        """Adds the site that marks a room, which extends between its walls, with its floor at `z_m`."""
+        self.add_box_site(name, (rect.x0, rect.y0, z_m), (rect.x1, rect.y1, z_m + height_m))
 
     def add_box_site(self, name: str, low_m: Sequence[float], high_m: Sequence[float]) -> None:
         """Adds a site that marks the axis-aligned box between two corners; it is never rendered."""
@@ -210,9 +201,7 @@ class HouseBuilder:
     def _describe(self, body: str, item: Item) -> None:
         """Notes the style of a body's item, and writes its facts into the file (`sim.houses.instance_facts`)."""
         self.styles[body] = item.style
-        if id(item) not in self._facts:
-            self._facts[id(item)] = (item, facts_of(item).text())
-        text = self._facts[id(item)][1]
+        text = self._facts(item)
         if text:
             self._spec.add_text(name=body, data=text)
 
@@ -228,12 +217,6 @@ class HouseBuilder:
         for child in item.children:
             self._add_body(body, child.item, child.pos_m, child.yaw_rad)
         return name
-
-    def _assembly(self, item: Item) -> Assembly:
-        """Returns the geoms of an item; computed once for each design."""
-        if id(item) not in self._assemblies:
-            self._assemblies[id(item)] = (item, assemble(item))
-        return self._assemblies[id(item)][1]
 
     def _add_geom(self, body: mujoco.MjsBody, geom: Geom) -> None:
         kind = _SHAPES[geom.shape]
@@ -251,6 +234,19 @@ class HouseBuilder:
             made.meshname = self._assets.mesh(geom.mesh)
         else:
             made.size = [_r(v) for v in geom.size_m] + [0.0] * (3 - len(geom.size_m))
+
+
+class _OncePerItem(Generic[T]):
+    """A function of an item that is computed once for each item object: a home shows most designs more than once."""
+
+    def __init__(self, compute: Callable[[Item], T]) -> None:
+        self._compute = compute
+        self._known: dict[int, tuple[Item, T]] = {}  # keeps the items alive, so that no other one gets their identity
+
+    def __call__(self, item: Item) -> T:
+        if id(item) not in self._known:
+            self._known[id(item)] = (item, self._compute(item))
+        return self._known[id(item)][1]
 
 
 def _r(value: float) -> float:

@@ -22,7 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.homes.housegen.furniture.item import Geom, Item, MeshShape
-from sim.homes.housegen.furniture.transforms import bounds, euler_from_matrix, geom_bounds, matrix_from_euler
+from sim.homes.housegen.furniture.transforms import (
+    bounds,
+    euler_from_matrix,
+    geom_bounds,
+    matrix_from_euler,
+    rounded_point,
+)
 from sim.homes.housegen.mjcf.collision import collision_boxes
 from sim.homes.housegen.mjcf.triangles import facets
 
@@ -134,7 +140,7 @@ def _capsule(rod: Geom, radius: float, half: float) -> Geom:
     if geom_bounds(rod)[0][2] < 0.5 * _ON_FLOOR_M and up[2] > 0.5:
         low = low + up * (radius - low[2]) / up[2]
     middle, length = 0.5 * (low + high), float(np.linalg.norm(high - low))
-    return replace(rod, shape="capsule", size_m=(radius, round(0.5 * length, 4)), pos_m=_rounded(middle))
+    return replace(rod, shape="capsule", size_m=(radius, round(0.5 * length, 4)), pos_m=rounded_point(middle))
 
 
 def _layers(geom: Geom, mesh: MeshShape) -> list[Geom]:
@@ -173,7 +179,7 @@ def _box(geom: Geom, middle: NDArray, half: NDArray, turn: NDArray | None = None
     at = np.asarray(geom.pos_m) + rotation @ middle
     size = tuple(round(float(max(h, 0.002)), 4) for h in half)
     euler = euler_from_matrix(rotation if turn is None else rotation @ turn)
-    return replace(geom, shape="box", mesh=None, size_m=size, pos_m=_rounded(at), euler_rad=euler)
+    return replace(geom, shape="box", mesh=None, size_m=size, pos_m=rounded_point(at), euler_rad=euler)
 
 
 # ---- mass ------------------------------------------------------------------------------------------------------------
@@ -210,7 +216,7 @@ def _mass_properties(
     x, y, z = (at - centre).T
     moments = (y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z)
     xx, yy, zz, xy, xz, yz = (round(float(mass @ m), 5) + 0.0 for m in moments)
-    return _rounded(centre), (xx, yy, zz, xy, xz, yz)
+    return rounded_point(centre), (xx, yy, zz, xy, xz, yz)
 
 
 # ---- gym equipment ---------------------------------------------------------------------------------------------------
@@ -227,9 +233,9 @@ def _light_parts(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
             continue
         rolls = part[0].shape == "sphere" or len(part) == 1
         low, high = bounds(part)
-        x, y, _ = _rounded(0.5 * (low + high))
-        moved = tuple(replace(geom, pos_m=_rounded(np.subtract(geom.pos_m, (x, y, 0.0)))) for geom in part)
-        alone = replace(item, geoms=moved, size_m=_rounded(high - low), surfaces=())
+        x, y, _ = rounded_point(0.5 * (low + high))
+        moved = tuple(replace(geom, pos_m=rounded_point(np.subtract(geom.pos_m, (x, y, 0.0)))) for geom in part)
+        alone = replace(item, geoms=moved, size_m=rounded_point(high - low), surfaces=())
         made.append(replace(as_movable(alone, mass_kg, RUBBER, rolls=rolls), offset_m=(x, y)))
     return (replace(item, geoms=tuple(rest)) if rest else None), tuple(made)
 
@@ -265,8 +271,3 @@ def _has_castors(item: Item) -> bool:
 def _axis(geom: Geom) -> NDArray[np.float64]:
     """Returns the direction (3,) of a geom's local z in the item frame."""
     return matrix_from_euler(*geom.euler_rad)[:, 2]
-
-
-def _rounded(point: Sequence[float] | NDArray) -> tuple[float, float, float]:
-    x, y, z = (round(float(v), 4) + 0.0 for v in point)
-    return x, y, z

@@ -1,11 +1,10 @@
-"""Items at their poses, rooms and lamps: the content of a house, before `builder` writes it."""
+"""Items at their poses, and lamps: the content of a house, before `builder` writes it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from sim.core.geometry.pose import Pose
-from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.furniture.item import Item
 
 
@@ -36,14 +35,6 @@ class PlacedItem:
     def to_world(self, x_m: float, y_m: float) -> tuple[float, float]:
         """Returns the world position in plan of a point of the item's frame."""
         return Pose(self.x_m, self.y_m, self.yaw_rad).place_of(x_m, y_m)
-
-
-@dataclass(frozen=True)
-class RoomBox:
-    """A room of the house file: its name and its extent between the walls."""
-
-    name: str
-    rect: Rect
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 import itertools
 import math
 
@@ -12,17 +11,17 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from sim.homes.housegen.furniture.item import Geom, MeshShape
+from sim.homes.housegen.furniture.shapes import BOX_CORNERS, BOX_FACES, hashed_mesh
 
 Facets = tuple[NDArray[np.float64], NDArray[np.int32]]
 """Corners (n, 3) in the geom's frame, metres; triangles (m, 3), counter-clockwise from outside."""
+Rings = tuple[tuple[float, float], ...]
+"""(radius, height) of the rings of a body of revolution about z, metres."""
 
 
 def mesh_shape(kind: str, vertices_m: NDArray[np.float64], faces: NDArray[np.int32]) -> MeshShape:
-    """Returns a mesh named after a hash of its content; vertices are rounded to 0.1 mm."""
-    vertices = np.round(np.asarray(vertices_m, dtype=np.float64) + 1e-9, 4) + 0.0  # + 0.0 turns -0.0 into 0.0
-    triangles = np.asarray(faces, dtype=np.int32)
-    content = np.rint(vertices * 1e4).astype("<i4").tobytes() + triangles.astype("<i4").tobytes()
-    return MeshShape(f"{kind}_{hashlib.sha1(content).hexdigest()[:8]}", vertices, triangles)
+    """Returns a mesh named after a hash of its content; vertices are rounded to 0.1 mm, half-way values up."""
+    return hashed_mesh(kind, np.asarray(vertices_m, dtype=np.float64) + 1e-9, faces)
 
 
 def facets(geom: Geom) -> Facets:
@@ -34,9 +33,9 @@ def facets(geom: Geom) -> Facets:
     if geom.mesh is not None:
         return _mesh(geom.mesh.vertices_m, geom.mesh.faces)
     if geom.shape == "box":
-        return _SIGNS * geom.size_m, _BOX_FACES
+        return BOX_CORNERS * geom.size_m, BOX_FACES
     if geom.shape == "cylinder":
-        return _revolve([(geom.size_m[0], -geom.size_m[1]), (geom.size_m[0], geom.size_m[1])])
+        return _revolve(((geom.size_m[0], -geom.size_m[1]), (geom.size_m[0], geom.size_m[1])))
     if geom.shape == "capsule":
         return _revolve(_capsule(*geom.size_m[:2]))
     if geom.shape in ("sphere", "ellipsoid"):
@@ -53,29 +52,24 @@ def _segments_for(radius_m: float) -> int:
     return 6 if radius_m < 0.03 else 8 if radius_m < 0.1 else 12
 
 
-def _capsule(radius_m: float, half_m: float) -> list[tuple[float, float]]:
-    """Returns radii and heights of the rings of a capsule; a thin one has flat ends."""
+def _capsule(radius_m: float, half_m: float) -> Rings:
+    """Returns the rings of a capsule; a thin one has flat ends."""
     if radius_m < 0.03:
-        return [(radius_m, -half_m - 0.6 * radius_m), (radius_m, half_m + 0.6 * radius_m)]
-    upper = [(radius_m, half_m), (0.7 * radius_m, half_m + 0.7 * radius_m), (0.0, half_m + radius_m)]
-    return [(r, -z) for r, z in reversed(upper)] + upper
+        return (radius_m, -half_m - 0.6 * radius_m), (radius_m, half_m + 0.6 * radius_m)
+    upper = (radius_m, half_m), (0.7 * radius_m, half_m + 0.7 * radius_m), (0.0, half_m + radius_m)
+    return (*((r, -z) for r, z in reversed(upper)), *upper)
 
 
-def _ball(radius_m: float) -> list[tuple[float, float]]:
+def _ball(radius_m: float) -> Rings:
     """Returns rings of the unit sphere, more of them for a larger sphere."""
     stacks = 3 if radius_m < 0.03 else 4 if radius_m < 0.07 else 6
     angles = [math.pi * (n / stacks - 0.5) for n in range(stacks + 1)]
-    return [(0.0 if n in (0, stacks) else math.cos(a), math.sin(a)) for n, a in enumerate(angles)]
-
-
-def _revolve(rings: list[tuple[float, float]], segments: int = 0) -> Facets:
-    """Returns a body of revolution about z from (radius, height) of its rings, lowest first; radius 0 is a pole."""
-    return _revolve_once(tuple(rings), segments)
+    return tuple((0.0 if n in (0, stacks) else math.cos(a), math.sin(a)) for n, a in enumerate(angles))
 
 
 @functools.lru_cache(maxsize=512)
-def _revolve_once(rings: tuple[tuple[float, float], ...], segments: int) -> Facets:
-    """Computes `_revolve`, once for each argument."""
+def _revolve(rings: Rings, segments: int = 0) -> Facets:
+    """Returns a body of revolution about z from its rings, lowest first; radius 0 is a pole."""
     segments = segments or _segments_for(max(radius for radius, _ in rings))
     turns = np.arange(segments) * (math.tau / segments)
     circle = np.column_stack([np.cos(turns), np.sin(turns)])
@@ -116,15 +110,3 @@ def _hull(points: bytes) -> Facets:
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
     triangles[inward] = triangles[inward][:, ::-1]
     return vertices[hull.vertices], new[triangles].astype(np.int32)
-
-
-_SIGNS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
-_BOX_FACES = np.array(
-    [
-        tri
-        for a, b, c, d in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-        for tri in ((a, b, c), (a, c, d))
-    ],
-    dtype=np.int32,
-)
-"""Triangles of a box; its corners are in the order of `_SIGNS`."""

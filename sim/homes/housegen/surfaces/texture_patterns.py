@@ -25,7 +25,7 @@ def noise(rng: np.random.Generator, px: int, rows_px: float, cols_px: float) -> 
     return field / (2.5 * field.std() + 1e-12)
 
 
-def _grid(px: int) -> tuple[Image, Image]:
+def grid(px: int) -> tuple[Image, Image]:
     """Returns row and column of each pixel's centre in [0, 1)."""
     edge = (np.arange(px) + 0.5) / px
     return np.meshgrid(edge, edge, indexing="ij")
@@ -36,14 +36,14 @@ def _grid(px: int) -> tuple[Image, Image]:
 
 def wood(rng: np.random.Generator, px: int, *, rings: int, waver: float, fibre: float) -> Image:
     """Returns the long grain of wood: `rings` wavy dark bands and fine fibre."""
-    _, x = _grid(px)
+    _, x = grid(px)
     bands = np.sin(math.tau * (rings * x + waver * noise(rng, px, 50, 16)))
     return 0.86 + 0.07 * bands + fibre * noise(rng, px, 24, 0.8) + 0.03 * noise(rng, px, 60, 4)
 
 
 def planks(rng: np.random.Generator, px: int, *, across: int, lengths: int) -> Image:
     """Returns floorboards along the vertical in different shades, with dark joints."""
-    y, x = _grid(px)
+    y, x = grid(px)
     board = np.floor(x * across).astype(int)
     offsets = rng.random(across)
     piece = np.floor((y + offsets[board]) * lengths).astype(int) % lengths
@@ -57,7 +57,7 @@ def planks(rng: np.random.Generator, px: int, *, across: int, lengths: int) -> I
 
 def basket(rng: np.random.Generator, px: int, *, blocks: int, strips: int) -> Image:
     """Returns parquet of squares of parallel strips, every other square turned."""
-    y, x = _grid(px)
+    y, x = grid(px)
     row, col = np.floor(y * blocks).astype(int), np.floor(x * blocks).astype(int)
     turned = (row + col) % 2 == 1
     along = np.where(turned, np.mod(y * blocks, 1.0), np.mod(x * blocks, 1.0))
@@ -70,7 +70,7 @@ def basket(rng: np.random.Generator, px: int, *, blocks: int, strips: int) -> Im
 
 def herringbone(rng: np.random.Generator, px: int, *, blocks: int) -> Image:
     """Returns parquet in zigzag columns."""
-    y, x = _grid(px)
+    y, x = grid(px)
     column = np.floor(x * blocks).astype(int)
     inside = np.mod(x * blocks, 1.0)
     rising = column % 2 == 0
@@ -88,7 +88,7 @@ def tiles(
     rng: np.random.Generator, px: int, *, across: int, down: int, grout_px: float, shade: float, offset: float = 0.0
 ) -> Image:
     """Returns rectangular tiles with grout, odd rows shifted by `offset` of a tile."""
-    y, x = _grid(px)
+    y, x = grid(px)
     row = np.floor(y * down).astype(int)
     shifted = x * across + offset * (row % 2)
     col = np.floor(shifted).astype(int) % across
@@ -99,7 +99,7 @@ def tiles(
 
 def checker(rng: np.random.Generator, px: int, *, dark: float) -> Image:
     """Returns two by two tiles, alternately light and dark."""
-    y, x = _grid(px)
+    y, x = grid(px)
     odd = (np.floor(2 * y) + np.floor(2 * x)) % 2 == 1
     joint = (np.mod(2 * x, 1.0) * px / 2 < 1.2) | (np.mod(2 * y, 1.0) * px / 2 < 1.2)
     return np.where(joint, 0.6, np.where(odd, dark, 0.95) + 0.02 * noise(rng, px, 8, 8))
@@ -122,7 +122,7 @@ def speckle(rng: np.random.Generator, px: int, *, size_px: float, share: float, 
 
 def brick(rng: np.random.Generator, px: int, *, clay: Colour, mortar: float) -> Image:
     """Returns eight courses of four bricks in running bond."""
-    y, x = _grid(px)
+    y, x = grid(px)
     row = np.floor(y * 8).astype(int)
     shifted = x * 4 + 0.5 * (row % 2)
     tone = rng.uniform(0.82, 1.1, (8, 4))[row, np.floor(shifted).astype(int) % 4] + 0.08 * noise(rng, px, 2, 2)
@@ -133,7 +133,7 @@ def brick(rng: np.random.Generator, px: int, *, clay: Colour, mortar: float) -> 
 def rubble(rng: np.random.Generator, px: int, *, stones: int) -> Image:
     """Returns a wall of natural stone: cells around random points, with seams."""
     points = rng.random((stones, 2))
-    y, x = _grid(px)
+    y, x = grid(px)
     gaps = np.abs(np.stack([y, x], -1)[:, :, None, :] - points)
     distance = np.sqrt((np.minimum(gaps, 1.0 - gaps) ** 2 * (2.2, 1.0)).sum(-1))
     near = np.sort(distance, axis=-1)[:, :, :2]
@@ -151,7 +151,7 @@ def plaster(rng: np.random.Generator, px: int, *, grain: float, cloud: float) ->
 
 def paper(rng: np.random.Generator, px: int, *, stripes: int, contrast: float) -> Image:
     """Returns striped wallpaper."""
-    _, x = _grid(px)
+    _, x = grid(px)
     return np.where(np.mod(x * stripes, 1.0) < 0.5, 0.96, 0.96 - contrast) + 0.01 * noise(rng, px, 1, 1)
 
 
@@ -163,7 +163,7 @@ def palette(rng: np.random.Generator, px: int, *, colours: tuple[str, ...]) -> I
 
 def motif(rng: np.random.Generator, px: int, *, across: int, contrast: float) -> Image:
     """Returns wallpaper with staggered small flowers."""
-    y, x = _grid(px)
+    y, x = grid(px)
     row = np.floor(y * across)
     u, v = np.mod(x * across + 0.5 * (row % 2), 1.0) - 0.5, np.mod(y * across, 1.0) - 0.5
     radius, angle = np.hypot(u, v), np.arctan2(v, u)
@@ -178,7 +178,7 @@ def carpet(rng: np.random.Generator, px: int, *, tuft_px: float, contrast: float
 
 def weave(rng: np.random.Generator, px: int, *, threads: int, contrast: float, twill: bool) -> Image:
     """Returns cloth in plain weave or diagonal twill."""
-    y, x = _grid(px)
+    y, x = grid(px)
     if twill:
         pattern = np.sin(math.tau * threads * (x + y))
     else:
@@ -188,14 +188,14 @@ def weave(rng: np.random.Generator, px: int, *, threads: int, contrast: float, t
 
 def chevron(rng: np.random.Generator, px: int, *, bands: int, contrast: float) -> Image:
     """Returns herringbone cloth."""
-    y, x = _grid(px)
+    y, x = grid(px)
     zigzag = np.abs(np.mod(x * bands, 1.0) - 0.5) * 2.0 / bands
     return 0.86 + contrast * np.sign(np.sin(math.tau * bands * 2 * (y + zigzag))) + 0.03 * noise(rng, px, 1, 1)
 
 
 def cane(rng: np.random.Generator, px: int, *, strands: int) -> Image:
     """Returns wicker: interlaced strands with dark gaps."""
-    y, x = _grid(px)
+    y, x = grid(px)
     over = (np.floor(x * strands) + np.floor(y * strands)) % 2 == 0
     along = np.where(over, np.mod(y * strands, 1.0), np.mod(x * strands, 1.0))
     return 0.55 + 0.4 * np.sin(math.pi * along) + 0.04 * noise(rng, px, 2, 2)
@@ -203,7 +203,7 @@ def cane(rng: np.random.Generator, px: int, *, strands: int) -> Image:
 
 def spines(rng: np.random.Generator, px: int, *, books: int, colours: tuple[Colour, ...]) -> Image:
     """Returns a row of book spines, one below the other, with titles as lighter bands."""
-    y, x = _grid(px)
+    y, x = grid(px)
     edges = np.cumsum(rng.uniform(0.6, 1.4, books))
     book = np.searchsorted(edges / edges[-1], y, side="right").clip(0, books - 1)
     tone = rng.uniform(0.75, 1.15, books)[:, None] * np.array(colours)[rng.integers(len(colours), size=books)]
@@ -224,7 +224,7 @@ def leaves(rng: np.random.Generator, px: int, *, size_px: float) -> Image:
 
 def rug(rng: np.random.Generator, px: int, *, colours: tuple[Colour, ...], pattern: str) -> Image:
     """Returns the picture of a whole rug: border bands around a field with a pattern."""
-    y, x = _grid(px)
+    y, x = grid(px)
     u, v = 2.0 * x - 1.0, 2.0 * y - 1.0
     edge = np.maximum(np.abs(u), np.abs(v))
     fields = {

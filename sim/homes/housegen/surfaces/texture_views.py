@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.homes.housegen.surfaces.texture_patterns import Colour, Image, noise
+from sim.homes.housegen.surfaces.texture_patterns import Colour, Image, grid, noise
 
 _HORIZON = 0.66
 """Row of the horizon as a share of the height."""
@@ -37,7 +37,7 @@ def outside(rng: np.random.Generator, px: int, *, scene: str, time: str) -> Imag
 
 def reflection(rng: np.random.Generator, px: int, *, wall: Colour, floor: Colour) -> Image:
     """Returns the image in a mirror: a blurred room with a bright window and a door, streaks, and a bevelled edge."""
-    y, x = _grid(px)
+    y, x = grid(px)
     image = np.empty((px, px, 3))
     image[:] = np.array(wall) * (1.04 - 0.22 * x[:, :, None])
     image[y < 0.16] = np.array((0.90, 0.91, 0.92))
@@ -59,16 +59,10 @@ def reflection(rng: np.random.Generator, px: int, *, wall: Colour, floor: Colour
     return np.clip(image, 0.0, 1.0)
 
 
-def _grid(px: int) -> tuple[Image, Image]:
-    """Returns row and column of each pixel's centre in [0, 1)."""
-    edge = (np.arange(px) + 0.5) / px
-    return np.meshgrid(edge, edge, indexing="ij")
-
-
 def _sky(rng: np.random.Generator, px: int, time: str) -> Image:
     """Returns the sky with clouds, and stars at night."""
     top, low, cloud = (np.array(colour) for colour in _SKIES[time])
-    y, _ = _grid(px)
+    y, _ = grid(px)
     height = np.clip(y / _HORIZON, 0.0, 1.0)[:, :, None] ** 1.3
     image = top + (low - top) * height
     field = noise(rng, px, 7, 20) + 0.35 * noise(rng, px, 2, 5)
@@ -98,7 +92,7 @@ def _fill(image: Image, mask: NDArray[np.bool_], colour: Colour, time: str, shad
 def _trees(image: Image, rng: np.random.Generator, time: str, base: float, heights: tuple[float, float]) -> None:
     """Paints trees with round crowns; `base` and heights are shares of the picture."""
     px = len(image)
-    y, x = _grid(px)
+    y, x = grid(px)
     leaves = 1.0 + 0.28 * noise(rng, px, 2, 2)
     at = rng.uniform(-0.05, 0.1)
     while at < 1.05:
@@ -115,7 +109,7 @@ def _trees(image: Image, rng: np.random.Generator, time: str, base: float, heigh
 def _hills(image: Image, rng: np.random.Generator, time: str) -> None:
     """Paints two chains of hills, meadows and some trees."""
     px = len(image)
-    y, _ = _grid(px)
+    y, _ = grid(px)
     haze = np.array(_SKIES[time][1])
     for level, rise, colour, clear in (
         (_HORIZON + 0.02, 0.22, (0.36, 0.46, 0.50), 0.55),
@@ -134,7 +128,7 @@ def _houses(
 ) -> None:
     """Paints a row of house fronts with windows, under flat or gabled roofs."""
     px = len(image)
-    y, x = _grid(px)
+    y, x = grid(px)
     at = -rng.uniform(0.0, 0.15)
     walls = ((0.80, 0.72, 0.60), (0.70, 0.42, 0.32), (0.84, 0.82, 0.78), (0.62, 0.60, 0.56), (0.76, 0.60, 0.44))
     while at < 1.0:
@@ -157,7 +151,7 @@ def _houses(
 
 def _street(image: Image, rng: np.random.Generator, time: str) -> None:
     """Paints the fronts across a street, the pavement, the road and trees."""
-    y, x = _grid(len(image))
+    y, x = grid(len(image))
     _houses(image, rng, time, 0.80, (0.30, 0.55), gabled=False)
     _fill(image, y >= 0.80, (0.66, 0.65, 0.63), time)
     _fill(image, y > 0.86, (0.36, 0.37, 0.39), time)
@@ -168,7 +162,7 @@ def _street(image: Image, rng: np.random.Generator, time: str) -> None:
 def _roofs(image: Image, rng: np.random.Generator, time: str) -> None:
     """Paints the roofs of a town in two rows, with hills behind."""
     px = len(image)
-    y, _ = _grid(px)
+    y, _ = grid(px)
     far = y > _profile(rng, px, _HORIZON - 0.04, 0.12, 26)
     image[far] = 0.5 * np.array(_SKIES[time][1]) + 0.5 * _lit((0.40, 0.46, 0.52), time)
     _houses(image, rng, time, 0.84, (0.14, 0.26), gabled=True)
@@ -179,7 +173,7 @@ def _roofs(image: Image, rng: np.random.Generator, time: str) -> None:
 def _garden(image: Image, rng: np.random.Generator, time: str) -> None:
     """Paints tall trees behind a hedge, a wooden fence and a lawn."""
     px = len(image)
-    y, x = _grid(px)
+    y, x = grid(px)
     leaves = 1.0 + 0.25 * noise(rng, px, 2, 2)
     _trees(image, rng, time, 0.72, (0.30, 0.50))
     _fill(image, y > _profile(rng, px, 0.70, 0.08, 5), (0.20, 0.36, 0.18), time, leaves)

@@ -17,7 +17,7 @@ from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.item import Geom, Item, Look
 from sim.homes.housegen.mjcf.builder import HouseBuilder
 from sim.homes.housegen.mjcf.movables import as_movable
-from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
+from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem
 from sim.houses.house import House
 
 CEILING_M = 2.5
@@ -81,7 +81,7 @@ class TrapSite:
         around = self.rect.grown(WALL_M)
         for rect in frame_around(around, pit.rect) if pit else [around]:
             self._builder.add_ground(rect)
-        self._builder.add_room(RoomBox(f"room_{kind}_00", self.rect), CEILING_M)
+        self._builder.add_room(f"room_{kind}_00", self.rect, CEILING_M)
         self._add_shell()
         self._add_lights()
 
@@ -140,13 +140,11 @@ class TrapSite:
         for geom in self.hide(self.add(category, [_box(x, y, z, GLASS, yaw_rad=yaw_rad)])).geoms:
             geom.group = INVISIBLE_GROUP
 
-    def pane(self, category: str, begin: tuple[float, float], end: tuple[float, float], z: Span = (0.0, 2.0)) -> None:
+    def pane(self, category: str, begin: tuple[float, float], end: tuple[float, float]) -> None:
         """Adds an upright invisible pane between two points."""
         length, yaw = math.dist(begin, end), math.atan2(end[1] - begin[1], end[0] - begin[0])
         x, y = 0.5 * (begin[0] + end[0]), 0.5 * (begin[1] + end[1])
-        self.invisible_box(
-            category, (x - length / 2, x + length / 2), (y - GLASS_M / 2, y + GLASS_M / 2), z, yaw_rad=yaw
-        )
+        self.invisible_box(category, (x - length / 2, x + length / 2), (y - GLASS_M / 2, y + GLASS_M / 2), yaw_rad=yaw)
 
     def posts(
         self, category: str, places: list[tuple[float, float]], radius: float, z: Span, look: Look
@@ -163,13 +161,13 @@ class TrapSite:
         return self.spec.body(self._builder.add(PlacedItem(item, x, y, 0.0, yaw_rad)))
 
     def movable_box(
-        self, category: str, x: Span, y: Span, height_m: float, look: Look, *, mass_kg: float, friction: float
+        self, x: Span, y: Span, height_m: float, look: Look, *, mass_kg: float, friction: float
     ) -> mujoco.MjsBody:
-        """Adds a box on the floor that the robot can push."""
+        """Adds a box on the floor, of category "objects", that the robot can push."""
         (x0, x1), (y0, y1) = x, y
         half = (0.5 * (x1 - x0), 0.5 * (y1 - y0), 0.5 * height_m)
         geom = Geom("box", half, (0.0, 0.0, half[2]), look)
-        item = Item(category, "trap", (0.0, 0.0, 0.0), (geom,))
+        item = Item("objects", "trap", (0.0, 0.0, 0.0), (geom,))
         movable = as_movable(item, mass_kg, friction)
         self._builder.add_movable_body(movable, PlacedItem(item, 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.0, 0.0))
         return self.spec.bodies[-1]

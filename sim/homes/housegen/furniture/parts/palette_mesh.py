@@ -7,7 +7,6 @@ the colour of one column. Another palette shows the same mesh in other colours.
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -15,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.homes.housegen.furniture.item import MeshShape
-from sim.homes.housegen.furniture.transforms import matrix_from_euler
+from sim.homes.housegen.furniture.shapes import BOX_CORNERS, BOX_FACES, hashed_mesh
+from sim.homes.housegen.furniture.transforms import roll_tilt_turn
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 COLUMNS = 16
@@ -26,14 +26,6 @@ ACCENTS = tuple(range(6, 12))
 """Columns of strong colours, which differ between palettes."""
 GREEN, TINT, CARD, HIDE = range(12, 16)
 """Leaves, glass, cardboard and bread, leather."""
-_SIGNS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
-_BOX_FACES = np.array(
-    [
-        tri
-        for a, b, c, d in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-        for tri in ((a, b, c), (a, c, d))
-    ]
-)
 
 
 class PaletteMesh:
@@ -41,7 +33,7 @@ class PaletteMesh:
 
     def __init__(self) -> None:
         self._vertices: list[NDArray[np.float64]] = []
-        self._faces: list[NDArray[np.int64]] = []
+        self._faces: list[NDArray[np.int32]] = []
         self._columns: list[int] = []
 
     def box(
@@ -50,8 +42,8 @@ class PaletteMesh:
         """Adds the box with these ranges, rolled about x, then tilted about y, then turned about z, at its middle."""
         half = np.array([0.5 * (hi - lo) for lo, hi in (x, y, z)])
         middle = np.array([0.5 * (hi + lo) for lo, hi in (x, y, z)])
-        rotation = matrix_from_euler(0.0, 0.0, turn) @ matrix_from_euler(roll, tilt, 0.0)
-        self._add(middle + (_SIGNS * half) @ rotation.T, _BOX_FACES, column)
+        rotation = roll_tilt_turn(roll, tilt, turn)
+        self._add(middle + (BOX_CORNERS * half) @ rotation.T, BOX_FACES, column)
 
     def round(
         self,
@@ -92,18 +84,15 @@ class PaletteMesh:
         look = replace(w.look("small"), emission=emission)
         w.add("mesh", (), (0.0, 0.0, 0.0), np.eye(3), look, solid=solid, mesh=self._shape())
 
-    def _add(self, vertices: NDArray[np.float64], faces: NDArray[np.int64], column: int) -> None:
+    def _add(self, vertices: NDArray[np.float64], faces: NDArray[np.int32], column: int) -> None:
         self._faces.append(faces + sum(len(part) for part in self._vertices))
         self._vertices.append(vertices)
         self._columns += [column] * len(vertices)
 
     def _shape(self) -> MeshShape:
-        vertices = np.round(np.vstack(self._vertices), 4) + 0.0
-        faces = np.vstack(self._faces).astype(np.int32)
         across = np.round((np.array(self._columns) + 0.5) / COLUMNS, 2)
-        texture = np.column_stack([across, np.zeros(len(vertices))])
-        content = np.rint(vertices * 1e4).astype("<i4").tobytes() + faces.astype("<i4").tobytes() + texture.tobytes()
-        return MeshShape(f"s_{hashlib.sha1(content).hexdigest()[:8]}", vertices, faces, texture)
+        texture_uv = np.column_stack([across, np.zeros(len(across))])
+        return hashed_mesh("s", np.vstack(self._vertices), np.vstack(self._faces), texture_uv)
 
 
 def in_one_mesh(build: Callable[[Workbench, PaletteMesh], None], *, solid: bool = False) -> Callable[[Workbench], None]:
@@ -117,7 +106,7 @@ def in_one_mesh(build: Callable[[Workbench, PaletteMesh], None], *, solid: bool 
     return built
 
 
-def _revolved(rings: Sequence[tuple[float, float]], sides: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _revolved(rings: Sequence[tuple[float, float]], sides: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Returns corners and triangles of a body of revolution about z, closed at both ends."""
     turns = (np.arange(sides) + 0.5) * (2.0 * np.pi / sides)
     circle = np.column_stack([np.cos(turns), np.sin(turns)])
@@ -130,4 +119,4 @@ def _revolved(rings: Sequence[tuple[float, float]], sides: int) -> tuple[NDArray
     last = (len(rings) - 1) * sides
     for i in range(1, sides - 1):
         faces += [(0, i + 1, i), (last, last + i, last + i + 1)]
-    return np.vstack(points), np.array(faces)
+    return np.vstack(points), np.array(faces, dtype=np.int32)

@@ -113,7 +113,7 @@ class Jam(Parameters):
                 site.hide(site.box("objects", (end_x - 0.2, end_x), y, (0.0, self.height_m), WOOD))
             if i != self.way_out:
                 y = (0.5 * (low + high - self.crate_m), 0.5 * (low + high + self.crate_m))
-                site.hide(site.movable_box("objects", (begin_x + 0.1, begin_x + 0.4), y, self.height_m, WOOD,
+                site.hide(site.movable_box((begin_x + 0.1, begin_x + 0.4), y, self.height_m, WOOD,
                                            mass_kg=self.mass_kg, friction=self.friction))  # fmt: skip
         line_m = self.towards * pitch + 0.5 * self.passage_m
         site.goal_furniture(self.goal, end_x + 3.2, min(max(line_m, 1.0), width_m - 1.0))
