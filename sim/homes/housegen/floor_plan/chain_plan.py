@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim.homes.housegen.floor_plan.draft import Draft
+from sim.homes.housegen.floor_plan.frames import Frame
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue, add_private_rows
 from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m, with_stairs_m
@@ -44,20 +45,14 @@ def draw_chain(
     _add_public_rooms(rng, draft, hall, (living_m, at, most_m), (corridor_m, corridor_m + core_m, back_m))
     queue = RoomQueue(rng, area_m2, 0.85 * (length_m * deep_m[0] + (length_m - most_m) * deep_m[1]), required)
     row = queue.fill_row(rng, at - living_m, core_m, 1.0, kinds=CORE_KINDS)
-    add_row(
-        rng, draft, hall, row, at - living_m, corridor_m,
-        lambda s0, s1, t0, t1: Rect(living_m + s0, corridor_m + t0, living_m + s1, corridor_m + t1),
-    )  # fmt: skip
+    to_rect = Frame(0.0, 0.0, "east").left(living_m, corridor_m)
+    add_row(rng, draft, hall, row, at - living_m, corridor_m, to_rect)
     add_private_rows(rng, draft, hall, queue, (most_m, length_m), corridor_m, (deep_m[0], deep_m[1]), scale)
     return draft, hall
 
 
 def _add_public_rooms(
-    rng: np.random.Generator,
-    draft: Draft,
-    hall: int,
-    x_m: tuple[float, float, float],
-    y_m: tuple[float, float, float],
+    rng: np.random.Generator, draft: Draft, hall: int, x_m: tuple[float, float, float], y_m: tuple[float, float, float]
 ) -> None:
     """Adds living room, dining room, kitchen and the second corridor.
 

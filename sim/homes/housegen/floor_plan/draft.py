@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sim.homes.housegen.floor_plan.plan import FloorPlan, Join, JoinKind, PlanError, Room
-from sim.homes.housegen.floor_plan.rectangles import Rect, shared_side
+from sim.homes.housegen.floor_plan.rectangles import Rect, shared_m
 from sim.homes.housegen.floor_plan.rooms import ROOM_RULES, PlanKind
 
 MIN_GAP_M = 0.5
@@ -35,8 +35,7 @@ class Draft:
 
     def shared_m(self, a: int, b: int) -> float:
         """Returns the length of wall that two rooms share."""
-        shared = shared_side(self.rects[a], self.rects[b])
-        return shared[1][1] - shared[1][0] if shared else 0.0
+        return shared_m(self.rects[a], self.rects[b])
 
 
 def check_draft(draft: Draft, area_m2: float) -> None:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from sim.homes.housegen.floor_plan.chain_plan import draw_chain
 from sim.homes.housegen.floor_plan.draft import Draft, check_draft, finish_draft
+from sim.homes.housegen.floor_plan.frames import Frame
 from sim.homes.housegen.floor_plan.great_room import draw_great_room
 from sim.homes.housegen.floor_plan.plan import FloorPlan, JoinKind, PlanError
 from sim.homes.housegen.floor_plan.programme import draw_program
-from sim.homes.housegen.floor_plan.rectangles import Interval, Rect, shared_side
+from sim.homes.housegen.floor_plan.rectangles import Interval, Rect, shared_m
 from sim.homes.housegen.floor_plan.ring_plan import draw_ring
 from sim.homes.housegen.floor_plan.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, ROOM_RULES, PlanKind
 from sim.homes.housegen.floor_plan.rows import Row, add_row, draw_common_length_m, draw_length_m, with_stairs_m
@@ -123,15 +125,9 @@ def _add_main_wing(
     """Adds the main corridor and its two rows; returns the corridor's index and the gaps left for branches."""
     length_m = draw_common_length_m(rng, upper, lower, corridor_m)
     hall = draft.add("hallway", Rect(0.0, 0.0, length_m, corridor_m))
-
-    def above(s0: float, s1: float, t0: float, t1: float) -> Rect:
-        return Rect(s0, corridor_m + t0, s1, corridor_m + t1)
-
-    def below(s0: float, s1: float, t0: float, t1: float) -> Rect:
-        return Rect(s0, -t1, s1, -t0)
-
-    gaps = add_row(rng, draft, hall, upper, length_m, corridor_m, above)
-    return hall, gaps + add_row(rng, draft, hall, lower, length_m, corridor_m, below)
+    frame = Frame(0.0, 0.0, "east")
+    gaps = add_row(rng, draft, hall, upper, length_m, corridor_m, frame.left(0.0, corridor_m))
+    return hall, gaps + add_row(rng, draft, hall, lower, length_m, corridor_m, frame.right())
 
 
 def _add_branch(
@@ -140,26 +136,16 @@ def _add_branch(
     """Adds a wing with a corridor that leaves the main one through `gap` and continues behind the row."""
     left, right = (Row(tuple(row), round(draw_length_m(rng, 3.4, 4.4) * _depth_scale(scale), 1), scale) for row in rows)
     length_m = draw_common_length_m(rng, left, right, corridor_m)
-    up = gap.y0 > 0.0
-    base, sign = (gap.y1, 1.0) if up else (gap.y0, -1.0)
-
-    def along(s0: float, s1: float) -> tuple[float, float]:
-        a, b = base + sign * s0, base + sign * s1
-        return min(a, b), max(a, b)
-
-    def on_left(s0: float, s1: float, t0: float, t1: float) -> Rect:
-        y0, y1 = along(s0, s1)
-        return Rect(gap.x0 - t1, y0, gap.x0 - t0, y1)
-
-    def on_right(s0: float, s1: float, t0: float, t1: float) -> Rect:
-        y0, y1 = along(s0, s1)
-        return Rect(gap.x1 + t0, y0, gap.x1 + t1, y1)
-
-    y0, y1 = along(0.0, length_m)
-    corridor = draft.add("hallway", Rect(gap.x0, min(gap.y0, y0), gap.x1, max(gap.y1, y1)))
+    if gap.y0 > 0.0:
+        whole = replace(gap, y1=gap.y1 + length_m)
+        to_west, to_east = Frame(gap.x0, gap.y1, "north").left(), Frame(gap.x1, gap.y1, "north").right()
+    else:
+        whole = replace(gap, y0=gap.y0 - length_m)
+        to_west, to_east = Frame(gap.x0, gap.y0, "south").right(), Frame(gap.x1, gap.y0, "south").left()
+    corridor = draft.add("hallway", whole)
     draft.join(hall, corridor, "open")
-    add_row(rng, draft, corridor, left, length_m, corridor_m, on_left)
-    add_row(rng, draft, corridor, right, length_m, corridor_m, on_right)
+    add_row(rng, draft, corridor, left, length_m, corridor_m, to_west)
+    add_row(rng, draft, corridor, right, length_m, corridor_m, to_east)
 
 
 def _add_loops(rng: np.random.Generator, draft: Draft) -> None:
@@ -188,8 +174,7 @@ def add_public_block(
     x0, (y0, y1) = draft.rects[hall].x1, across_m
     depth_m = y1 - y0
     wanted_m2 = max(
-        area_m2 - sum(rect.area_m2 for rect in draft.rects),
-        0.85 * sum(ROOM_RULES[room].area_m2[1] for room in public),
+        area_m2 - sum(rect.area_m2 for rect in draft.rects), 0.85 * sum(ROOM_RULES[room].area_m2[1] for room in public)
     )
     width_m = float(np.clip(wanted_m2 / depth_m, *WIDTH_M))
     block = Rect(x0, y0, x0 + round(width_m, 1), y1)
@@ -202,7 +187,9 @@ def add_public_block(
             rects = _side_by_side(shares, block)
         else:
             rects = _two_deep(order, shares, block)
-        doors = [room for room, rect in zip(order, rects, strict=True) if _has_door_to(draft.rects[hall], rect)]
+        doors = [
+            room for room, rect in zip(order, rects, strict=True) if shared_m(draft.rects[hall], rect) >= DOOR_WALL_M
+        ]
         if doors not in ([], ["kitchen"]):
             break
     else:
@@ -210,12 +197,6 @@ def add_public_block(
     rooms = [draft.add(room, rect) for room, rect in zip(order, rects, strict=True)]
     _join_public(rng, draft, rooms, kind)
     _join_hall(rng, draft, hall, rooms, kind)
-
-
-def _has_door_to(hall: Rect, room: Rect) -> bool:
-    """Returns whether a corridor and a room share enough wall for a door."""
-    shared = shared_side(hall, room)
-    return shared is not None and shared[1][1] - shared[1][0] >= DOOR_WALL_M
 
 
 def _side_by_side(shares: np.ndarray, block: Rect) -> list[Rect]:
@@ -260,6 +241,5 @@ def _join_public(rng: np.random.Generator, draft: Draft, rooms: Sequence[int], k
 def _join_hall(rng: np.random.Generator, draft: Draft, hall: int, rooms: Sequence[int], kind: PlanKind) -> None:
     """Connects the corridor with the public rooms that it touches."""
     for room in rooms:
-        if not _has_door_to(draft.rects[hall], draft.rects[room]):
-            continue
-        draft.join(hall, room, "opening" if kind in ("openplan", "studio") or rng.random() < 0.5 else "door")
+        if draft.shared_m(hall, room) >= DOOR_WALL_M:
+            draft.join(hall, room, "opening" if kind in ("openplan", "studio") or rng.random() < 0.5 else "door")

@@ -21,11 +21,11 @@ class Frame:
         (ax, ay), (bx, by) = self._point(s0, t0), self._point(s1, t1)
         return Rect(min(ax, bx), min(ay, by), max(ax, bx), max(ay, by))
 
-    def left(self, first_s: float, first_t: float) -> ToRect:
+    def left(self, first_s: float = 0.0, first_t: float = 0.0) -> ToRect:
         """Returns the map for a row to the left that begins at (`first_s`, `first_t`)."""
         return lambda s0, s1, t0, t1: self.rect(first_s + s0, first_s + s1, first_t + t0, first_t + t1)
 
-    def right(self, first_s: float, first_t: float) -> ToRect:
+    def right(self, first_s: float = 0.0, first_t: float = 0.0) -> ToRect:
         """Returns the map for a row to the right that begins at (`first_s`, -`first_t`)."""
         return lambda s0, s1, t0, t1: self.rect(first_s + s0, first_s + s1, -first_t - t1, -first_t - t0)
 

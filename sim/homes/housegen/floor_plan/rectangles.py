@@ -95,9 +95,19 @@ class Rect:
 
     def strip(self, side: Side, span: Interval, inward_m: float, outward_m: float = 0.0) -> Rect:
         """Returns the rectangle along `span` of a side, from `inward_m` inside to `outward_m` outside."""
-        line, sign = self.line(side), 1.0 if side in ("east", "north") else -1.0
+        line, sign = self.line(side), outward(side)
         a, b = sorted((line - sign * inward_m, line + sign * outward_m))
         return Rect(a, span[0], b, span[1]) if side in ("east", "west") else Rect(span[0], a, span[1], b)
+
+
+def outward(side: Side) -> float:
+    """Returns the direction of a side's outward normal along its world axis: +1 for east and north, else -1."""
+    return 1.0 if side in ("east", "north") else -1.0
+
+
+def side_point(side: Side, along_m: float, across_m: float) -> tuple[float, float]:
+    """Returns the point (x, y) with these coordinates along the world axes parallel and normal to a side."""
+    return (across_m, along_m) if side in ("east", "west") else (along_m, across_m)
 
 
 def frame_around(outer: Rect, hole: Rect) -> list[Rect]:
@@ -117,6 +127,12 @@ def shared_side(a: Rect, b: Rect) -> tuple[Side, Interval] | None:
             if hi - lo > EPS_M:
                 return side, (lo, hi)
     return None
+
+
+def shared_m(a: Rect, b: Rect) -> float:
+    """Returns the length of the side that two rectangles share, 0 if they do not touch."""
+    shared = shared_side(a, b)
+    return shared[1][1] - shared[1][0] if shared else 0.0
 
 
 def subtract(span: Interval, holes: Sequence[Interval], shortest_m: float = EPS_M) -> list[Interval]:

@@ -165,7 +165,7 @@ def _add_rows(
             continue
         gap_m = c if side in ring.wings else 0.0
         row = queue.fill_row(rng, length_m, depth_m, scale, gap_m=gap_m)
-        for gap in add_row(rng, draft, hall, row, length_m, c, frame.left(0.0, 0.0)):
+        for gap in add_row(rng, draft, hall, row, length_m, c, frame.left()):
             starts[side] = Frame(gap.centre[0], gap.y0 if side == "north" else gap.y1, side)
     for side in ring.wings:
         n = ("north", "south", "east").index(side)
@@ -225,9 +225,9 @@ def _add_pairs(
     if depth_m < PAIR_DEPTH_M:
         frame, hall = (south, core.south) if rng.random() < 0.5 else (north, core.north)
         row = queue.fill_row(rng, length_m, depth_m, scale, kinds=WITHOUT_DAYLIGHT)
-        add_row(rng, draft, hall, row, length_m, core.corridor_m, frame.left(0.0, 0.0))
+        add_row(rng, draft, hall, row, length_m, core.corridor_m, frame.left())
         return
     cut_m = round(depth_m * float(rng.uniform(0.46, 0.54)) * 20) / 20
     for frame, hall, deep_m in ((south, core.south, cut_m), (north, core.north, depth_m - cut_m)):
         row = queue.fill_row(rng, length_m, deep_m, scale, kinds=WITHOUT_DAYLIGHT)
-        add_row(rng, draft, hall, row, length_m, core.corridor_m, frame.left(0.0, 0.0))
+        add_row(rng, draft, hall, row, length_m, core.corridor_m, frame.left())

@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from sim.homes.housegen.floor_plan.draft import Draft
+from sim.homes.housegen.floor_plan.frames import Frame
 from sim.homes.housegen.floor_plan.plan import PlanError
 from sim.homes.housegen.floor_plan.programme import Group, draw_groups, draw_numbers, may_add
-from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.rooms import GAP, ROOM_RULES, Column
 from sim.homes.housegen.floor_plan.rows import Row, add_row
 
@@ -156,13 +156,11 @@ def add_private_rows(
     """
     begin_m, end_m = span_m
     row = queue.fill_row(rng, end_m, deep_m[0], scale)
-    add_row(rng, draft, hall, row, end_m, corridor_m, lambda s0, s1, t0, t1: Rect(s0, -t1, s1, -t0))
+    frame = Frame(0.0, 0.0, "east")
+    add_row(rng, draft, hall, row, end_m, corridor_m, frame.right())
     if begin_m < end_m:
         row = queue.fill_row(rng, end_m - begin_m, deep_m[1], scale)
-        add_row(
-            rng, draft, hall, row, end_m - begin_m, corridor_m,
-            lambda s0, s1, t0, t1: Rect(begin_m + s0, corridor_m + t0, begin_m + s1, corridor_m + t1),
-        )  # fmt: skip
+        add_row(rng, draft, hall, row, end_m - begin_m, corridor_m, frame.left(begin_m, corridor_m))
 
 
 def _widths_m(groups: Sequence[Group], depth_m: float, scale: float, gap_m: float) -> tuple[float, float, float]:

@@ -109,9 +109,10 @@ class Sketch:
         """
         low, high = opening.clear_span()
         at_m = 0.5 * (low + high) if at_m is None else at_m
-        level = opening.side in ("north", "south")
-        self.x_m, self.y_m = (at_m, opening.line_m) if level else (opening.line_m, at_m)
-        self.yaw_rad = (math.pi / 2 if level else 0.0) + (math.pi if self.rng.random() < 0.5 else 0.0)
+        self.x_m, self.y_m = opening.point(at_m)
+        self.yaw_rad = (math.pi / 2 if opening.side in ("north", "south") else 0.0) + (
+            math.pi if self.rng.random() < 0.5 else 0.0
+        )
         return high - low
 
     def draw_hinge(self, width_m: float, angle_rad: float) -> tuple[tuple[float, float], float]:

@@ -20,6 +20,7 @@ from sim.homes.housegen.floor_plan.rectangles import (
     Rect,
     Side,
     frame_around,
+    side_point,
     subtract,
 )
 from sim.homes.housegen.furniture.item import Geom, Item, Look
@@ -112,15 +113,14 @@ def _to_corner(rects: Sequence[Rect], room: int, side: Side, span: Interval) -> 
     """Returns an outer stretch of wall, longer by its thickness where it ends at an outer corner of the home."""
     rect = rects[room]
     whole = rect.span(side)
-    line, sign = rect.line(side), 1.0 if side in ("east", "north") else -1.0
+    line = rect.line(side)
 
     def grown(end: float, corner: float, step: float) -> float:
         along = end + step * 0.02
         if abs(end - corner) > EPS_M:
             return end
-        for across in (line + sign * 0.02, line - sign * 0.02):  # a room around the corner, or one in the same line
-            point = (across, along) if side in ("east", "west") else (along, across)
-            if any(r.distance_to(*point) <= EPS_M for r in rects):
+        for across in (line + 0.02, line - 0.02):  # a room around the corner, or one in the same line
+            if any(r.distance_to(*side_point(side, along, across)) <= EPS_M for r in rects):
                 return end
         return end + step * OUTER_WALL_M
 
@@ -176,7 +176,7 @@ def _boards_mesh(boards: Sequence[tuple[Side, Rect]], centre: tuple[float, float
         n = len(vertices)
         for along in rect.span(side):
             for across, z in ((front, 0.0), (front, BASEBOARD_M[1]), (back, BASEBOARD_M[1])):
-                x, y = (across, along) if side in ("east", "west") else (along, across)
+                x, y = side_point(side, along, across)
                 vertices.append((x - centre[0], y - centre[1], z))
         quads = ((n, n + 3, n + 4, n + 1), (n + 1, n + 4, n + 5, n + 2))
         for a, b, c, d in quads if side in ("north", "west") else [q[::-1] for q in quads]:

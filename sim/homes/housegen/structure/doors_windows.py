@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from sim.homes.housegen.floor_plan.rectangles import INWARD_YAW_RAD, outward, side_point
 from sim.homes.housegen.furniture.item import Geom, Item, Look
 from sim.homes.housegen.mjcf.placed import Hinge, PlacedItem
 from sim.homes.housegen.structure.openings import HALF_WALL_M, JAMB_M, OUTER_WALL_M, Opening
@@ -24,8 +25,7 @@ SADDLE_M = (0.09, 0.003)
 def place_in_wall(item: Item, hole: Opening) -> PlacedItem:
     """Returns an item that was designed for an opening in a north wall, turned to the wall of its opening."""
     yaw = {"north": 0.0, "west": math.pi / 2, "south": math.pi, "east": -math.pi / 2}[hole.side]
-    x, y = (hole.centre_m, hole.line_m) if hole.side in ("north", "south") else (hole.line_m, hole.centre_m)
-    return PlacedItem(item, x, y, 0.0, yaw)
+    return PlacedItem(item, *hole.point(hole.centre_m), 0.0, yaw)
 
 
 class OpeningItems:
@@ -83,9 +83,8 @@ def place_door(hole: Opening, items: OpeningItems) -> list[PlacedItem]:
     lo, hi = hole.clear_span()
     if hole.kind == "entry":
         leaf = items.leaf(round(hi - lo, 4), hole.top_m - JAMB_M, 0.0)
-        level = hole.side in ("north", "south")
-        x, y = (lo, hole.line_m) if level else (hole.line_m, lo)  # at the end of the floor: nothing is visible below it
-        placed.append(PlacedItem(leaf, x, y, 0.0, 0.0 if level else math.pi / 2))
+        yaw = 0.0 if hole.side in ("north", "south") else math.pi / 2
+        placed.append(PlacedItem(leaf, *hole.point(lo), 0.0, yaw))  # at the end of the floor: nothing is visible below
     elif hole.leaf is not None:
         placed.append(place_leaf(hole, items))
     return placed
@@ -133,14 +132,11 @@ def _ajar(leaf: Item, hole: Opening) -> PlacedItem:
     assert hole.leaf is not None
     lo, hi = hole.clear_span()
     side = hole.side_of(hole.leaf.room)
-    into = {"east": math.pi, "west": 0.0, "north": -math.pi / 2, "south": math.pi / 2}[side]
     along = math.pi / 2 if side in ("east", "west") else 0.0
     closed = along if hole.leaf.hinge_at_start else along + math.pi
-    swing = 1.0 if math.sin(into - closed) > 0 else -1.0
+    swing = 1.0 if math.sin(INWARD_YAW_RAD[side] - closed) > 0 else -1.0
     at_hinge = (lo + 0.002) if hole.leaf.hinge_at_start else (hi - 0.002)
-    sign = 1.0 if side in ("east", "north") else -1.0
-    at = hole.line_m - sign * (HALF_WALL_M + 0.004 + 0.02)
-    x, y = (at_hinge, at) if side in ("north", "south") else (at, at_hinge)
+    x, y = side_point(side, at_hinge, hole.line_m - outward(side) * (HALF_WALL_M + 0.004 + 0.02))
     angle_rad, widest_rad = hole.leaf.angle_rad, hole.leaf.widest_rad
     hinge = None if widest_rad is None else Hinge(angle_rad, widest_rad, turns_left=swing > 0)
     return PlacedItem(leaf, x, y, 0.0, closed + swing * angle_rad, hinge)

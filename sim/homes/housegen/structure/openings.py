@@ -9,7 +9,16 @@ from typing import Literal
 import numpy as np
 
 from sim.homes.housegen.floor_plan import FloorPlan, Join, PlanError
-from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Interval, Rect, Side, shared_side, subtract
+from sim.homes.housegen.floor_plan.rectangles import (
+    OPPOSITE,
+    SIDES,
+    Interval,
+    Rect,
+    Side,
+    shared_side,
+    side_point,
+    subtract,
+)
 from sim.homes.housegen.floor_plan.rooms import ROOM_RULES
 from sim.houses.house import Room
 from sim.world.plan_requirements import SWING_M, Doorway, plan_faults, room_faults
@@ -89,6 +98,10 @@ class Opening:
         """The middle of the span."""
         return 0.5 * (self.span[0] + self.span[1])
 
+    def point(self, at_m: float) -> tuple[float, float]:
+        """Returns the point (x, y) at a position along the middle of the wall."""
+        return side_point(self.side, at_m, self.line_m)
+
     def side_of(self, room: int) -> Side:
         """Returns the side of one of its two rooms on which it lies."""
         return self.side if room == self.a else OPPOSITE[self.side]
@@ -142,10 +155,8 @@ def plan_rule_faults(
         for hole in holes:
             if hole.kind in ("door", "entry", "window"):
                 along_x = hole.side in ("north", "south")
-                centre = (hole.centre_m, hole.line_m) if along_x else (hole.line_m, hole.centre_m)
-                (windows if hole.kind == "window" else doors).append(
-                    Doorway(centre, hole.span[1] - hole.span[0], along_x, z_m)
-                )
+                doorway = Doorway(hole.point(hole.centre_m), hole.span[1] - hole.span[0], along_x, z_m)
+                (windows if hole.kind == "window" else doors).append(doorway)
     return plan_faults(rooms, doors, windows)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sim.homes.housegen.floor_plan import PlanError
-from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, Rect, Side, frame_around
+from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, Rect, Side, frame_around, outward
 from sim.homes.housegen.furnishing.placement import RoomLayout
 from sim.homes.housegen.furniture.item import Geom, Item, Look
 from sim.homes.housegen.structure.openings import HALF_WALL_M, Opening
@@ -103,8 +103,8 @@ def place_flight(hall: Rect, openings: Sequence[Opening], room: int, rise_m: flo
     up = ends[1] if OPPOSITE[ends[1]] in doors and OPPOSITE[ends[0]] not in doors else ends[0]
     landing_m = min(LANDING_M[1], spare_m)
     strip = inner.strip(walls[0], inner.span(walls[0]), WIDTH_M)
-    top = inner.line(up) - landing_m if up in ("east", "north") else inner.line(up) + landing_m
-    sign = 1.0 if up in ("east", "north") else -1.0
+    sign = outward(up)
+    top = inner.line(up) - sign * landing_m
 
     def piece(first: float, last: float) -> Rect:
         lo, hi = sorted((round(top - sign * first, 4), round(top - sign * last, 4)))

@@ -7,7 +7,16 @@ from typing import Literal
 
 import numpy as np
 
-from sim.homes.housegen.floor_plan.rectangles import INWARD_YAW_RAD, SIDES, Interval, Rect, Side, subtract
+from sim.homes.housegen.floor_plan.rectangles import (
+    INWARD_YAW_RAD,
+    SIDES,
+    Interval,
+    Rect,
+    Side,
+    outward,
+    side_point,
+    subtract,
+)
 from sim.homes.housegen.furnishing.placement.records import Placement, floor_placement
 from sim.homes.housegen.furniture.item import Item
 from sim.homes.housegen.structure.openings import Opening
@@ -87,9 +96,7 @@ class RoomWalls:
 
     def point(self, side: Side, at: float, inward_m: float) -> tuple[float, float]:
         """Returns the point at a position along a side, `inward_m` into the room."""
-        sign = 1.0 if side in ("east", "north") else -1.0
-        line = self.inner.line(side) - sign * inward_m
-        return (line, at) if side in ("east", "west") else (at, line)
+        return side_point(side, at, self.inner.line(side) - outward(side) * inward_m)
 
     def placement(self, item: Item, side: Side, at: float, gap_m: float = WALL_GAP_M) -> Placement:
         """Returns the placement of a floor item with its back to a wall and its centre at a position along it."""
