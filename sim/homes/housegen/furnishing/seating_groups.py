@@ -201,14 +201,10 @@ def _hang_screen(
     return hang_screen(layout, source, screen, side, 0.5 * sum(host.rect.span(side)), bottom_m) is not None
 
 
-def has_chair(source: FurnitureSource) -> bool:
-    """Returns whether the pool has an armchair that the home has less than twice."""
-    return source.has_unused("chair", "arm")
-
-
 def reading_corner(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places an armchair in a corner with a small table and a lamp next to it."""
-    chair = place(layout, source, "chair", "arm", along="corner", front_m=0.5) if has_chair(source) else None
+    unused = source.has_unused("chair", "arm")
+    chair = place(layout, source, "chair", "arm", along="corner", front_m=0.5) if unused else None
     if chair is None:
         return None
     towards = 1.0 if source.chance(0.5) else -1.0

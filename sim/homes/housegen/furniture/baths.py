@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
@@ -49,6 +50,23 @@ def _pane(w: Workbench, a: tuple[float, float], b: tuple[float, float], low: flo
     x, y, half = 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * math.dist(a, b)
     turn = math.atan2(b[1] - a[1], b[0] - a[0])
     w.box(around(x, half), around(y, 0.003), (low, high), glass, turn=turn)
+
+
+def _glazed_tray(
+    w: Workbench, points: Sequence[tuple[float, float]], tray: float, high: float, metal: Look, bar: float
+) -> None:
+    """Adds a corner tray of a height with panes between metal bars along its outline, and one at its right side.
+
+    The outline leads from the right end of the front to the left end of the back wall, at half and -half a side.
+    """
+    half, low, glass = points[0][0], tray + 0.01, w.look("glass")
+    corners = [(x, y, z) for x, y in ((-half, -half), *points) for z in (0.0, tray)]
+    w.mesh(named_mesh("tray", corners), (0.0, 0.0, 0.0), w.look("ceramic"))
+    _pane(w, (-half, -half + 0.004), (half, -half + 0.004), low, high, glass)
+    for a, b in itertools.pairwise(points):
+        _pane(w, a, b, low, high, glass)
+        for z in (low, high):
+            w.bar((*a, z), (*b, z), bar, bar, metal)
 
 
 def _hollow(
@@ -265,7 +283,7 @@ def corner_cabin(w: Workbench) -> None:
 def curved_cabin(w: Workbench) -> None:
     """Builds a quadrant tray with bent glass for a corner at smallest x and y; the right side is a straight pane."""
     half, high = 0.5 * w.width(0.85, 1.00), w.length(1.90, 2.00)
-    metal, glass = w.look("metal"), w.look("glass")
+    metal = w.look("metal")
     points = [
         (half, -half),
         (half, -0.1 * half),
@@ -274,13 +292,7 @@ def curved_cabin(w: Workbench) -> None:
         (-0.1 * half, half),
         (-half, half),
     ]
-    tray = [(x, y, z) for x, y in ((-half, -half), *points) for z in (0.0, 0.12)]
-    w.mesh(named_mesh("tray", tray), (0.0, 0.0, 0.0), w.look("ceramic"))
-    _pane(w, (-half, -half + 0.004), (half, -half + 0.004), 0.13, high, glass)
-    for a, b in itertools.pairwise(points):
-        _pane(w, a, b, 0.13, high, glass)
-        for z in (0.13, high):
-            w.bar((*a, z), (*b, z), 0.022, 0.022, metal)
+    _glazed_tray(w, points, 0.12, high, metal, 0.022)
     for x, y in (points[0], points[2], points[3], points[-1]):
         w.box(around(x, 0.011), around(y, 0.011), (0.12, high), metal)
     _shower_set(w, -half, -0.2 * half, 0.12, metal, rain=True)
@@ -289,15 +301,9 @@ def curved_cabin(w: Workbench) -> None:
 def pentagon_cabin(w: Workbench) -> None:
     """Builds a five-sided tray with a door across the corner and a brass frame; the right side is a straight pane."""
     half, high = 0.5 * w.width(0.88, 1.00), w.length(1.92, 2.02)
-    metal, glass = w.look("brass"), w.look("glass")
+    metal = w.look("brass")
     points = [(half, -half), (half, -0.05 * half), (-0.05 * half, half), (-half, half)]
-    tray = [(x, y, z) for x, y in ((-half, -half), *points) for z in (0.0, 0.06)]
-    w.mesh(named_mesh("tray", tray), (0.0, 0.0, 0.0), w.look("ceramic"))
-    _pane(w, (-half, -half + 0.004), (half, -half + 0.004), 0.07, high, glass)
-    for a, b in itertools.pairwise(points):
-        _pane(w, a, b, 0.07, high, glass)
-        for z in (0.07, high):
-            w.bar((*a, z), (*b, z), 0.02, 0.02, metal)
+    _glazed_tray(w, points, 0.06, high, metal, 0.02)
     for x, y in points:
         w.box(around(x, 0.012), around(y, 0.012), (0.05, high), metal)
     handle = (0.475 * half + 0.035, 0.475 * half + 0.035)

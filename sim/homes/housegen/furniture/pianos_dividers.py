@@ -6,9 +6,10 @@ Usual retail dimensions: pianos 1.10-1.28 m high and 1.42-1.52 m wide, screens 1
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.shapes import chamfered_box
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -54,45 +55,33 @@ def folding_screen(w: Workbench) -> None:
     """Builds a room divider of three or four panels in zigzag."""
     panels, panel_m, high = w.whole(3, 4), w.length(0.42, 0.50), w.length(1.65, 1.80)
     wood, cloth = w.look("wood"), w.look("curtain")
-    fold = 0.35
-    run = panel_m * math.cos(fold)
-    for i in range(panels):
-        sign = 1 if i % 2 == 0 else -1
-        c = (i + 0.5 - 0.5 * panels) * run
-        dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
-        w.box(
-            (-0.008, 0.008),
-            (c - 0.5 * panel_m + 0.02, c + 0.5 * panel_m - 0.02),
-            (0.10, high - 0.03),
-            cloth,
-            turn=sign * fold,
-        )
+    for c, turn in _zigzag(panels, panel_m, 0.35):
+        dx, dy = -math.sin(turn), math.cos(turn)
+        y = inset(around(c, 0.5 * panel_m), 0.02)
+        w.box((-0.008, 0.008), y, (0.10, high - 0.03), cloth, turn=turn)
         for t in centred(panel_m, 0.015):
-            w.box(around(t * dx, 0.014), around(c + t * dy, 0.014), (0.0, high), wood, turn=sign * fold)
+            w.box(around(t * dx, 0.014), around(c + t * dy, 0.014), (0.0, high), wood, turn=turn)
         for z in (0.10, high - 0.03):
-            w.box(
-                (-0.012, 0.012),
-                (c - 0.5 * panel_m + 0.02, c + 0.5 * panel_m - 0.02),
-                around(z, 0.02),
-                wood,
-                turn=sign * fold,
-            )
+            w.box((-0.012, 0.012), y, around(z, 0.02), wood, turn=turn)
 
 
 def shoji_screen(w: Workbench) -> None:
     """Builds a room divider of four upright lattice panels of wood and paper in zigzag."""
-    panels, panel_m, high, fold = 4, w.length(0.40, 0.46), w.length(1.60, 1.75), 0.30
+    panel_m, high = w.length(0.40, 0.46), w.length(1.60, 1.75)
     wood, paper = w.look("wood"), w.look("paper")
-    run = panel_m * math.cos(fold)
-    for i in range(panels):
-        sign = 1 if i % 2 == 0 else -1
-        c = (i + 0.5 - 0.5 * panels) * run
-        dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
-        w.box((-0.004, 0.004), around(c, 0.5 * panel_m), (0.05, high - 0.02), paper, turn=sign * fold)
+    for c, turn in _zigzag(4, panel_m, 0.30):
+        dx, dy = -math.sin(turn), math.cos(turn)
+        w.box((-0.004, 0.004), around(c, 0.5 * panel_m), (0.05, high - 0.02), paper, turn=turn)
         for t in (-0.5 * panel_m + 0.012, 0.0, 0.5 * panel_m - 0.012):
-            w.box(around(t * dx, 0.011), around(c + t * dy, 0.011), (0.0 if t else 0.05, high), wood, turn=sign * fold)
+            w.box(around(t * dx, 0.011), around(c + t * dy, 0.011), (0.0 if t else 0.05, high), wood, turn=turn)
         for z in (0.05, 0.36 * high, 0.68 * high, high - 0.03):
-            w.box((-0.010, 0.010), around(c, 0.5 * panel_m), (z, z + 0.03), wood, turn=sign * fold)
+            w.box((-0.010, 0.010), around(c, 0.5 * panel_m), (z, z + 0.03), wood, turn=turn)
+
+
+def _zigzag(panels: int, panel_m: float, fold_rad: float) -> Iterator[tuple[float, float]]:
+    """Yields middle along y and turn of each panel of a folding screen."""
+    for i in range(panels):
+        yield (i + 0.5 - 0.5 * panels) * panel_m * math.cos(fold_rad), fold_rad if i % 2 == 0 else -fold_rad
 
 
 STYLES = (

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from sim.homes.housegen.floor_plan.rectangles import SIDES, Rect, Side
+from sim.homes.housegen.floor_plan.rectangles import SIDES, Side
 from sim.homes.housegen.furnishing.placement.layout import RoomLayout
 from sim.homes.housegen.furnishing.placement.records import (
     Placement,
@@ -22,7 +22,7 @@ from sim.homes.housegen.mjcf.merging import collision_geoms
 
 MAX_CHECKS = 16
 """Positions along the walls that are tested for walkability before the search for one item ends."""
-TUCK_STEP_M = 0.04
+TUCK_OUT_M, TUCK_STEP_M = 0.3, 0.04
 SLIDE_STEP_M = 0.1
 
 
@@ -87,25 +87,23 @@ def put_near(
     return None
 
 
-def put_at(
-    layout: RoomLayout, item: Item, x_m: float, y_m: float, yaw_rad: float, zones: Sequence[Rect] = ()
-) -> Placement | None:
+def put_at(layout: RoomLayout, item: Item, x_m: float, y_m: float, yaw_rad: float) -> Placement | None:
     """Puts an item exactly at this pose; returns None if it does not fit."""
     placement = floor_placement(item, x_m, y_m, yaw_rad)
-    return placement if layout.try_put(placement, zones) else None
+    return placement if layout.try_put(placement) else None
 
 
 def put_partly_under(
-    layout: RoomLayout, item: Item, host: Placement, x_m: float, y_m: float, yaw_rad: float, out_m: float = 0.3
+    layout: RoomLayout, item: Item, host: Placement, x_m: float, y_m: float, yaw_rad: float
 ) -> Placement | None:
     """Puts an item partly under `host` (a chair under a table).
 
-    It is moved back along its own -x, up to `out_m`, until the two do not touch.
+    It is moved back along its own -x, up to `TUCK_OUT_M`, until the two do not touch.
     """
     c, s = math.cos(yaw_rad), math.sin(yaw_rad)
     host_boxes = geom_boxes(collision_geoms(host.item), host.placed)
     geoms = collision_geoms(item)
-    for step in range(int(out_m / TUCK_STEP_M) + 1):
+    for step in range(int(TUCK_OUT_M / TUCK_STEP_M) + 1):
         placement = floor_placement(item, x_m - c * TUCK_STEP_M * step, y_m - s * TUCK_STEP_M * step, yaw_rad)
         if boxes_touch(geom_boxes(geoms, placement.placed), host_boxes):
             continue

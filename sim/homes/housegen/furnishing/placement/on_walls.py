@@ -90,9 +90,8 @@ def _hang_at(
     fits: Callable[[Placement], bool],
 ) -> Placement | None:
     """Hangs an item at one position along a wall; returns None if it does not fit."""
-    rect = layout.inner.strip(side, (at - item.size_m[1] / 2, at + item.size_m[1] / 2), item.size_m[0])
-    x, y = layout.walls.point(side, at, 0.0)
-    placement = Placement(PlacedItem(item, x, y, bottom_m, INWARD_YAW_RAD[side]), rect, side)
+    placement = _on_wall(layout, item, side, at, bottom_m)
+    rect = placement.rect
     free = is_wall_free(layout, item, side, at, bottom_m, margin_m=margin_m, over_floor=over_floor)
     if not free or not fits(placement):
         return None
@@ -112,14 +111,19 @@ def hang_before_window(layout: RoomLayout, item: Item, side: Side, window: Openi
     """Hangs a curtain or blind in front of a window, its top a little above it; returns False if it does not fit."""
     top_m = min(window.top_m + 0.14, layout.ceiling_m - 0.02)
     bottom_m = top_m - item.size_m[2]
-    half = item.size_m[1] / 2
-    rect = layout.inner.strip(side, (window.centre_m - half, window.centre_m + half), item.size_m[0])
+    placement = _on_wall(layout, item, side, window.centre_m, bottom_m)
+    rect = placement.rect
     if bottom_m < 0.01 or not layout.inner.contains(rect, 0.002) or not layout.is_clear(rect, bottom_m, top_m):
         return False
-    x, y = layout.walls.point(side, window.centre_m, 0.0)
-    placement = Placement(PlacedItem(item, x, y, bottom_m, INWARD_YAW_RAD[side]), rect, side)
     layout.add(placement, bottom_m, bottom_m + item.size_m[2])
     return True
+
+
+def _on_wall(layout: RoomLayout, item: Item, side: Side, at: float, bottom_m: float) -> Placement:
+    """Returns the placement of an item on a wall, its middle at a position along it."""
+    rect = layout.inner.strip(side, (at - item.size_m[1] / 2, at + item.size_m[1] / 2), item.size_m[0])
+    x, y = layout.walls.point(side, at, 0.0)
+    return Placement(PlacedItem(item, x, y, bottom_m, INWARD_YAW_RAD[side]), rect, side)
 
 
 def hang_from_ceiling(layout: RoomLayout, item: Item, x_m: float, y_m: float) -> bool:

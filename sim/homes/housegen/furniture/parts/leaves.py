@@ -111,12 +111,7 @@ def cut_leaf(at: Point, along: ArrayLike, outline: Sequence[tuple[float, float]]
     rim = [length * (u * axis + v * side - 0.25 * (abs(v) + 0.5 * max(0.0, u - 0.3)) * up) for u, v in flat]
     middle = length * 0.3 * axis
     vertices = np.array([*rim, middle + 0.02 * length * up, middle - 0.02 * length * up]) + np.asarray(at)
-    n = len(rim)
-    faces = []
-    for i in range(n):
-        j = (i + 1) % n
-        faces += [(i, j, n), (j, i, n + 1)]
-    return _outwards(vertices, faces)
+    return _outwards(vertices, _two_fans(len(rim)))
 
 
 def blossom(at: Point, along: Point, radius: float, petals: int = 5) -> Body:
@@ -130,13 +125,8 @@ def blossom(at: Point, along: Point, radius: float, petals: int = 5) -> Body:
         angle, far = math.pi * i / petals, radius * (1.0 if i % 2 == 0 else 0.45)
         rise = 0.35 * radius if i % 2 == 0 else 0.1 * radius
         vertices.append(far * (math.cos(angle) * first + math.sin(angle) * second) + rise * axis)
-    n = len(vertices)
     vertices = np.array([*vertices, -0.05 * radius * axis, -0.7 * radius * axis]) + np.asarray(at)
-    faces = []
-    for i in range(n):
-        j = (i + 1) % n
-        faces += [(i, j, n), (j, i, n + 1)]
-    return _outwards(vertices, faces)
+    return _outwards(vertices, _two_fans(2 * petals))
 
 
 def tube(path: Sequence[Point], radii: Sequence[float], segments: int = 6, *, groove: float = 1.0) -> Body:
@@ -192,6 +182,15 @@ def bush(at: Point, half: Point, rng: np.random.Generator, segments: int = 9) ->
         for low in (1, 1 + n):
             faces += [(low + i, low + j, low + n + j), (low + i, low + n + j, low + n + i)]
     return np.asarray(at) + np.array(vertices) * np.asarray(half), faces
+
+
+def _two_fans(n: int) -> list[tuple[int, int, int]]:
+    """Returns the triangles between a rim of n vertices and the two that follow, one on either side of it."""
+    faces = []
+    for i in range(n):
+        j = (i + 1) % n
+        faces += [(i, j, n), (j, i, n + 1)]
+    return faces
 
 
 def _outwards(vertices: NDArray[np.float64], faces: list[tuple[int, int, int]]) -> Body:
