@@ -31,7 +31,7 @@ GROUND_TRUTH = "gt"
 """The segmentation of agents that do not use one: they are run once, under this name."""
 FORM = "AGENT [--semantics SOURCE] [--explorer NAME] [--verification METHOD] [--motion KIND] [--config FIELD=VALUE ...]"
 """The text that `AgentSetup.named` takes."""
-NAMES = ("explorer", "verification", "noise", "seed", "replicates", "motion")
+NAMES = ("explorer", "verification", "noise", "seed", "replicates", "motion", "weights")
 """Options of `stubborn run` with one value that make another row of a table, in the order of its name."""
 
 
@@ -152,6 +152,7 @@ class _Recorded(msgspec.Struct):
     seed: int | None = None
     replicates: int | None = None
     motion: str | None = None
+    weights: str | None = None
     settings: dict[str, object] = msgspec.field(default_factory=dict)
 
 
@@ -165,12 +166,15 @@ def key_of(run: Run) -> RunKey:
     find_agent(agent)
     split = run.recorded("split_identity")
     recorded = convert(dict(run.config), _Recorded, where=f"Config '{run.path / 'config.json'}'")
-    options = _options_text({name: getattr(recorded, name) for name in NAMES}, recorded.settings)
+    values = {name: getattr(recorded, name) for name in NAMES}
+    if recorded.weights is not None:
+        values["weights"] = Path(recorded.weights).name  # the same row on another machine
+    options = _options_text(values, recorded.settings)
     return RunKey(str(split["name"]), AgentSetup(agent, options, semantics), str(split["version"]))
 
 
-def runs_in(out: Path, version: str) -> dict[RunKey, Path]:
-    """Returns the folders of the runs in a folder that are of a version of the splits.
+def runs_in(out: Path, *versions: str) -> dict[RunKey, Path]:
+    """Returns the folders of the runs in a folder that are of one of these versions of the splits.
 
     Raises:
         ConfigError: two folders hold runs of the same row, or a run cannot be read.
@@ -178,7 +182,7 @@ def runs_in(out: Path, version: str) -> dict[RunKey, Path]:
     folders: dict[RunKey, Path] = {}
     for file in sorted(out.glob("*/results.jsonl")):
         key = key_of(read_run(file.parent))
-        if key.version == version and folders.setdefault(key, file.parent) != file.parent:
+        if key.version in versions and folders.setdefault(key, file.parent) != file.parent:
             raise ConfigError(f"'{folders[key]}' and '{file.parent}' are runs of the same row.")
     return folders
 

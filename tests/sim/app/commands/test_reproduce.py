@@ -157,6 +157,7 @@ def test_causes_come_from_the_trajectories_and_not_from_old_lines(args: reproduc
         ("noise", "harsh", "of examples.my_agent:make --noise harsh "),
         ("semantics", "noisy", "of examples.my_agent:make --semantics noisy "),
         ("agent", "random", "of random "),
+        ("weights", "/their/mine.safetensors", "of examples.my_agent:make --weights mine.safetensors "),
         ("profile", "good", "with profile = "),
         ("split_identity", {"name": "tiny", "version": "1", "sha256": "0"}, r"of .* on tiny 1 \(0\)"),
     ],
