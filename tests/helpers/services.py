@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import http.server
 import threading
 import time
@@ -67,14 +68,15 @@ def late(data: bytes) -> Handler:
 
 
 def trickled(data: bytes) -> Handler:
-    """Sends a byte each 0.1 s."""
+    """Sends a byte each 0.1 s, until the client leaves."""
 
     def answer(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
         _begin(handler, data)
-        for first in range(8):
-            handler.wfile.write(data[first : first + 1])
-            handler.wfile.flush()
-            time.sleep(0.1)
+        with contextlib.suppress(ConnectionError):
+            for first in range(8):
+                handler.wfile.write(data[first : first + 1])
+                handler.wfile.flush()
+                time.sleep(0.1)
 
     return answer
 
