@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -79,8 +80,9 @@ def test_a_sensor_of_its_own_is_no_back_door_to_the_truth() -> None:
 
 @pytest.mark.parametrize("field", ["sensors", "words", "pictures"])
 def test_one_name_is_not_a_tuple_of_names(field: str) -> None:
+    wrong: dict[str, Any] = {field: "rgb"}
     with pytest.raises(ConfigError, match=f"AgentSpec.{field} must be a tuple of names, got 'rgb'"):
-        AgentSpec(make=agents.make_spy, **{field: "rgb"})
+        AgentSpec(make=agents.make_spy, **wrong)
 
 
 def test_ground_truth_cannot_be_asked_for_without_declaring_it() -> None:
