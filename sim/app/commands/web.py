@@ -24,6 +24,8 @@ from sim.core.errors import ConfigError
 if TYPE_CHECKING:
     from sim.app.web.choices import Offer
 
+FIRST_AGENT = "stubborn-plus"
+"""The agent that the page proposes first."""
 HERE = frozenset(("127.0.0.1", "localhost", "::1"))
 ALL_INTERFACES = frozenset(("0.0.0.0", "::"))
 """Names by which this machine addresses itself."""
@@ -122,7 +124,8 @@ def offer(args: Args) -> Offer:
     same = ("weights", "labels", "root", "seed", "profile", "noise", "config", "config_file")
     values = {name: getattr(args, name) for name in same}
     robot = None if args.robot is None else absolute_robot(args.robot)
-    options = with_absolute_paths(RunOptions(robot=robot, **values))  # agents may change the current folder
+    # Absolute, because agents may change the current folder.
+    options = with_absolute_paths(RunOptions(agent=FIRST_AGENT, robot=robot, **values))
     root = options.root if robot is not None else None
     resolve(replace(options, config=(), config_file=None, labels=None, root=root))  # these depend on agent and house
     return Offer(

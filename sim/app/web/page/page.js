@@ -259,8 +259,16 @@ function showAbove() {
   closeOutcome();
 }
 
+// Proposes the descriptions that ship for a house of val.
+function proposeWishes(split, house) {
+  const texts = split === "val" ? Object.keys(choices.splits.descriptions?.[house] ?? {}) : [];
+  fill($("wishes"), texts.map((text) => new Option(text)));
+  $("wish").placeholder = texts[0] ?? "the wooden chair";
+}
+
 async function showHouse() {
   const asked = {split: $("split").value, house: $("house").value};
+  proposeWishes(asked.split, asked.house);
   $("place").value = "";
   above = null;
   $("above-words").textContent = `Drawing ${plain(asked.house)} ...`;
@@ -375,14 +383,6 @@ function follow(request) {
   $("episode").value = request.episode_id ?? "";
   chosenAgent();
   showHouse();
-}
-
-// Only stubborn-plus tests colours, rooms and places; the first wish chooses it in place of the default agent.
-function wished() {
-  const better = "stubborn-plus";
-  if (!$("wish").value || $("agent").value !== "stubborn" || !(better in choices.agents)) return;
-  $("agent").value = better;
-  chosenAgent();
 }
 
 function start(driver) {
@@ -683,7 +683,6 @@ $("start-driving").addEventListener("click", () => start("person"));
 $("split").addEventListener("change", () => { chosenSplit(); showAbove(); });
 $("house").addEventListener("change", () => { chosenHouse(); showAbove(); });
 $("goal").addEventListener("change", () => { $("wish").value = ""; chosenGoal(); });
-$("wish").addEventListener("change", wished);
 $("wish").addEventListener("input", chosenGoal);
 $("episode").addEventListener("change", chosenEpisode);
 $("agent").addEventListener("change", chosenAgent);

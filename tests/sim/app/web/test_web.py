@@ -23,6 +23,7 @@ import pytest
 from sim.app.commands import report, web
 from sim.app.commands import run as sim_run
 from sim.app.evaluation.results import read_results
+from sim.episodes.splits import load_split
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.browser import ESCAPE, Browser, missing
 from tests.helpers.results import ENTRIES
@@ -423,6 +424,20 @@ def test_a_press_on_the_house_chooses_the_start(server: Server, browser: Browser
     browser.run("document.getElementById('house').selectedIndex = 1; chosenHouse();")
     assert browser.run("return document.getElementById('place').value") == ""
     assert browser.console_errors() == []
+
+
+def test_descriptions_that_ship_for_a_house_are_proposed_to_the_stronger_agent(
+    server: Server, browser: Browser
+) -> None:
+    browser.visit(server.address)
+    wait_for(lambda: browser.run("return document.getElementById('wishes').children.length"))
+    assert browser.run("return document.getElementById('agent').value") == "stubborn-plus"
+    proposed = browser.run("return [...document.getElementById('wishes').children].map((option) => option.value)")
+    split = load_split("descriptions")
+    assert set(proposed) == {episode.goal for episode in split.episodes if episode.house == split.houses[0]}
+    choose = "const split = document.getElementById('split'); split.value = 'traps'; "
+    browser.run(choose + "split.dispatchEvent(new Event('change'))")
+    assert browser.run("return document.getElementById('wishes').children.length") == 0
 
 
 def test_a_run_is_downloaded_and_deleted_with_a_second_click(runs: Path, server: Server, browser: Browser) -> None:
