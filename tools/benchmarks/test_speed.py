@@ -117,7 +117,7 @@ def test_step(benchmark: BenchmarkFixture, semantics: str) -> None:
 
 @pytest.mark.parametrize("split", ["val", "large"])
 def test_step_by_size_of_the_house(benchmark: BenchmarkFixture, split: str) -> None:
-    """A step of `stubborn` with ground truth and its environment; homes of `large` have 300 to 800 m2."""
+    """A step of `stubborn` with ground truth and its environment; homes of `large` have 292 to 684 m2."""
     benchmark.group = "size"
     steps = _steps("gt", split)
     benchmark.pedantic(lambda: next(steps), rounds=500, warmup_rounds=2)
@@ -130,7 +130,7 @@ def test_start_of_a_command(benchmark: BenchmarkFixture) -> None:
 
 @pytest.mark.parametrize("split", ["val", "large"])
 def test_first_step_in_a_new_house(benchmark: BenchmarkFixture, split: str) -> None:
-    """The reset to a house that is not loaded, and one step; homes of `large` have 300 to 800 m2."""
+    """The reset to a house that is not loaded, and one step; homes of `large` have 292 to 684 m2."""
     benchmark.group = "house"
     env = make_env("gt", split)
     firsts = iter({episode.house: episode for episode in env.split.episodes}.values())

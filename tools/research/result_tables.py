@@ -80,11 +80,12 @@ ABOUT_PAPER = f"""\
 
 Columns that begin with *paper* are of Luo et al. (2022), from MP3D houses in Habitat; all others are measured here, in
 generated houses (splits {VERSION}) with contacts. Compare orders and differences of agents, not the figures. `gt` is
-ground-truth segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agent, corresponds to the
-paper's EEAux and is not that agent.
+ground-truth segmentation, `rednet` the network that shipped with these splits. `cloned`, a small end-to-end agent,
+corresponds to the paper's EEAux and is not that agent.
 
-`stubborn reproduce all --episodes 200 --workers 2` runs all of it again, and resumes; each table states its hours. This
-page is made from the [result lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
+`stubborn reproduce all --episodes 200 --workers 2` makes the same tables with the present splits and network, and
+resumes; each table states its hours. This page is made from the [result lines]({ARCHIVE.name}) by
+`python -m tools.research.result_tables`.
 
 ## Verdicts
 
