@@ -1,4 +1,4 @@
-"""Writes descriptions of objects of a house, each of which provably fits exactly one of them.
+"""Writes descriptions of objects of a house; each description provably fits exactly one object.
 
 A description has a name and one to three further conditions: colour, material, room, size, or a place next to, on or
 under something. An object satisfies the conditions clearly, and every other object of the same name fails one of them
@@ -33,7 +33,7 @@ _CONFUSED: Sequence[frozenset[str]] = (
     frozenset(("pink", "red", "purple")), frozenset(("yellow", "beige", "orange", "brown")),
     frozenset(("blue", "purple", "grey")), frozenset(("green", "grey", "yellow")),
 )  # fmt: skip
-"""Colours of which one may be taken for another."""
+"""Groups of colours that may be confused with each other."""
 _SAID_MATERIALS = ("wood", "metal", "glass", "leather", "fabric", "stone", "wicker")
 _NEAR_M, _FAR_M = 0.45, 1.1
 """Gaps that are clearly next to each other, and clearly not."""
@@ -44,7 +44,7 @@ _MIN_PIXELS, _MIN_SHARE = 400, 0.4
 _ROUND, _NOT_ROUND = 0.95, 0.8
 """Roundness (`HouseObject.roundness`) from which an object is clearly round, and up to which it is clearly not."""
 _SHAPED = frozenset({"coffee table", "dining table", "side table", "stool", "pouf", "ottoman", "floor cushion"})
-"""Objects of which it is said that they are round."""
+"""Objects that are described as round if they are."""
 _LANDMARKS = frozenset(
     {
         "bed", "four-poster bed", "sofa", "corner sofa", "desk", "dining table", "coffee table", "television", "fridge",
@@ -64,7 +64,7 @@ _OF_COURSE: Mapping[str, frozenset[str]] = MappingProxyType(
         "fabric": frozenset({"towel rail", "towel stand", "towel ladder", "towel radiator", "towels"}),
     }
 )  # fmt: skip
-"""Words that nobody would say of these objects: they go without saying, or are true only of what hangs on them."""
+"""Words that describe none of these objects: people expect them, or they are true only of what hangs on the object."""
 _UNCOLOURED = frozenset({"towel rail", "towel stand", "towel ladder", "towel radiator", "linen shelf", "laundry shelf"})
 """Objects whose colour is that of what hangs or lies on them."""
 _NAMED_BY_ROOM = frozenset(

@@ -11,7 +11,7 @@
 - `chains`: several goals of all kinds of `KINDS`, one after the other (`sim.episodes.chains`).
 - `pictures`: a picture of one object by another camera than the robot's (`sim.episodes.goal_pictures`).
 
-The split lies beside the other one, whose houses it uses. Starts are drawn by the recipe `val`.
+The split lies next to the other one, whose houses it uses. Starts are drawn by the recipe `val`.
 """
 
 from __future__ import annotations
@@ -81,12 +81,12 @@ def main(args: Args) -> int:
     """Writes the split; returns the exit status.
 
     Raises:
-        ConfigError: the folders do not lie beside each other, or no house has such a goal.
+        ConfigError: the folders do not lie next to each other, or no house has such a goal.
     """
     split = load_split(args.split)
     home = next(iter(split.house_paths.values())).parent
     if args.out.resolve().parent != home.resolve().parent or args.out.resolve() == home.resolve():
-        raise ConfigError(f"--out '{args.out}' must be another folder in '{home.parent}', beside the houses.")
+        raise ConfigError(f"--out '{args.out}' must be another folder in '{home.parent}', next to the houses.")
     per_house = -(-args.episodes // len(split.houses))
     work = [(number, house, per_house) for number, house in enumerate(split.houses)]
     made, by_house = ordered_map(functools.partial(_draw, args), work, workers=args.workers), []

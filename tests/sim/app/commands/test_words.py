@@ -62,7 +62,7 @@ def test_agents_that_take_no_words_get_none_of_these_episodes(homes):
 
 
 def test_the_split_must_lie_beside_the_houses(homes, tmp_path):
-    with pytest.raises(ConfigError, match="beside the houses"):
+    with pytest.raises(ConfigError, match="next to the houses"):
         words.main(words.Args(kind="seen", split=str(homes), out=tmp_path / "elsewhere"))
     with pytest.raises(ConfigError, match="No house of"):
         words.main(words.Args(kind="unseen", split=str(homes), out=homes.parent / "none"))
