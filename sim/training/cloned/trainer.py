@@ -305,8 +305,10 @@ def agreement(
 
 
 def draw_curve(out: Path) -> None:
-    """Draws the columns of `train.csv` and `val.csv` as `curve.png`."""
+    """Draws the columns of `train.csv` and `val.csv` as `curve.png`, if `val.csv` has rows."""
     train, val = (read_columns(out / name) for name in ("train.csv", "val.csv"))
+    if not val:
+        return
     figure = empty_figure(9.0, 3.2, what="The curves of a training")
     axes = figure.subplots(1, 2)
     if train:

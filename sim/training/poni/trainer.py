@@ -193,8 +193,13 @@ class Trainer(TimedTraining):
 
 
 def draw_curve(out: Path) -> None:
-    """Draws the losses of `train.csv` and `val.csv`, and the share of best choices, as `curve.png`."""
+    """Draws the losses of `train.csv` and `val.csv`, and the share of best choices, as `curve.png`.
+
+    Nothing is drawn if `val.csv` has no rows.
+    """
     train, val = (read_columns(out / name) for name in ("train.csv", "val.csv"))
+    if not val:
+        return
     figure = empty_figure(11.0, 3.2, what="The curves of a training")
     axes = figure.subplots(1, 3)
     for axis, name in zip(axes, ("area", "objects"), strict=False):
@@ -234,7 +239,9 @@ class Choices:
     most: float = 0.0
     """Sum of the true potentials of the best frontiers."""
 
-    def add(self, true: Float[np.ndarray, " n"], predicted: Float[np.ndarray, " n"], path_m: Float[np.ndarray, " n"]):
+    def add(
+        self, true: Float[np.ndarray, " n"], predicted: Float[np.ndarray, " n"], path_m: Float[np.ndarray, " n"]
+    ) -> None:
         """Counts the choice among the frontiers of a map; nothing if all are equally good."""
         best = true >= true.max() - TIE
         if best.all():

@@ -19,7 +19,15 @@ from sim.core.interface import CameraModel, ConfigError
 from sim.core.paths import code_hash
 from sim.core.reading import Count, Number
 from sim.training.segmentation.balanced import Batches, ViewIndex
-from sim.training.segmentation.dataset import list_shards, pixel_counts, spread_views, stored_block_px, stored_views
+from sim.training.segmentation.dataset import (
+    GOAL_IDS,
+    LabelledView,
+    list_shards,
+    pixel_counts,
+    spread_views,
+    stored_block_px,
+    stored_views,
+)
 from sim.training.segmentation.device_batches import DeviceBatches, room_for
 from sim.training.segmentation.evaluation import Iou, evaluate
 from sim.training.segmentation.options import MAY_CHANGE, Args, check
@@ -129,12 +137,11 @@ class Trainer:
         counts = ", ".join(f"{name} {n} of {styles}" for name, (n, styles) in index.counts().items())
         print(f"{len(index.views)} views; objects and styles: {counts}", flush=True)
         sampler = Sampler(camera, 1, Augmentation(), second=second, used_block_px=used, area_weights=True)
+        views, whole = spread_views(val_shards, self.args.val_count), spread_views(shards, NORMALISATION_VIEWS)
+        _require_usable(views, whole)
         self.data = self._make_batches(index, sampler)
-        self.val: Samples | Subset = Samples(
-            spread_views(val_shards, self.args.val_count), Sampler(camera, used, second=second)
-        )
-        augmented = Sampler(camera, used, Augmentation(), second=second)
-        self.whole = Samples(spread_views(shards, NORMALISATION_VIEWS), augmented)
+        self.val: Samples | Subset = Samples(views, Sampler(camera, used, second=second))
+        self.whole = Samples(whole, Sampler(camera, used, Augmentation(), second=second))
 
     def _make_batches(self, index: ViewIndex, sampler: Sampler) -> Batches | DeviceBatches:
         """Returns the batches, on a GPU computed there if its memory has room for the views."""
@@ -372,6 +379,16 @@ class _Steps:
 
 def _mean(losses: Sequence[Tensor]) -> float:
     return float(torch.stack(list(losses)).mean())
+
+
+def _require_usable(val: Sequence[LabelledView], whole: Sequence[LabelledView]) -> None:
+    """Raises ConfigError if views have different sizes, or if those for the evaluation show no goal category."""
+    sizes = sorted({view.semantic.shape[::-1] for view in (*val, *whole)})
+    if len(sizes) > 1:
+        texts = ", ".join(f"{width} x {height}" for width, height in sizes)
+        raise ConfigError(f"--views and --val-views must have one size, got views of {texts} pixels.")
+    if not any(np.isin(view.semantic, GOAL_IDS).any() for view in val):
+        raise ConfigError("--val-views show no goal category, by which the best network is chosen: give other views.")
 
 
 def _all_shards(folders: Sequence[Path]) -> list[Path]:

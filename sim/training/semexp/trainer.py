@@ -80,7 +80,8 @@ class Run:
         self.ppo = PPO(
             SemExpPolicy, self.envs, n_steps=args.rollout, batch_size=args.batch, n_epochs=args.epochs,
             learning_rate=self._rate, gamma=args.discount, gae_lambda=0.95, ent_coef=args.entropy, clip_range=0.2,
-            vf_coef=0.5, max_grad_norm=0.5, seed=args.seed, device="cpu", policy_kwargs={"config": self.net_config},
+            vf_coef=0.5, max_grad_norm=0.5, device="cpu", policy_kwargs={"config": self.net_config},
+            seed=args.seed % 2**32,  # NumPy's old generator, which PPO seeds, takes 32 bits
         )  # fmt: skip
         if not self._resumed():
             FILES.save(args.out / "start.safetensors", self.policy.net)
@@ -207,8 +208,8 @@ def curve(file: Path) -> bytes:
     """Returns a PNG of a training curve: mean steps to first sight over primitive steps, and its running mean."""
     figure = empty_figure(6.4, 3.2, what="The curves of a training")
     axes = figure.subplots()
-    if file.is_file():
-        table = {name: np.array(column) for name, column in read_columns(file).items()}
+    table = {name: np.array(column) for name, column in read_columns(file).items()}
+    if table:
         kept = table["episodes"] >= LAST_EPISODES // 3
         steps, sights = table["steps"][kept] / 1e6, table["steps_to_first_sight"][kept]
         axes.plot(steps, sights, linewidth=0.5, alpha=0.4, color="C0")

@@ -11,29 +11,12 @@ import pytest
 import torch
 
 from sim.core.interface import MPCAT40_ID, CameraModel, ConfigError
-from sim.houses.labels import Instance
 from sim.training.segmentation.balanced import Batches, ViewIndex
 from sim.training.segmentation.dataset import list_shards, read_shard
 from sim.training.segmentation.recipe import PROGRESSIVE, Recipe
 from sim.training.segmentation.samples import Sampler
-from sim.training.views.coco import annotate
 from sim.training.views.shards import write_shard
-from sim.training.views.views import View
-
-
-def view_of(number: int, objects: list[tuple[str, str]], *, extras: bool = True) -> View:
-    """A view with a block of pixels for each category and style."""
-    semantic = np.full((48, 64), MPCAT40_ID["wall"], np.uint8)
-    ids = np.zeros((48, 64), np.uint16)
-    instances, styles = [], {}
-    for i, (category, style) in enumerate(objects):
-        cut = slice(10, 30), slice(10 * i, 10 * i + 8)
-        semantic[cut], ids[cut] = MPCAT40_ID[category], i + 1
-        instances.append(Instance(f"{category}_{i:02d}", category, (i,)))
-        styles[instances[-1].name] = style
-    more = {"instances": ids, "annotations": annotate(ids, instances, styles)} if extras else {}
-    colour, depth = np.zeros((48, 64, 3), np.uint8), np.full((48, 64), 2000, np.uint16)
-    return View(f"v{number:05d}", colour, depth, semantic, {"house": "h"}, **more)
+from tests.helpers.labelled_views import view_of
 
 
 @pytest.fixture

@@ -18,6 +18,8 @@ from sim.homes.plans.plan import read_plan, write_plan
 from sim.homes.plans.sight import PlanCamera
 from sim.training.plan_env.env import PlanEnv, PlanEnvConfig
 from sim.training.semexp.env import FAST, RewardConfig, SemExpEnv
+from sim.training.semexp.options import Args
+from sim.training.semexp.trainer import Run
 from stubborn.agent import AgentConfig
 from stubborn.exploration.semexp import SemExpConfig, SemExpExplorer
 from stubborn.exploration.semexp_input import PolicyInput
@@ -147,3 +149,13 @@ def test_environments_can_share_the_plans(plans: Path):
     env.reset(seed=0)
     env.reset(seed=1)
     assert len(reads) == 1
+
+
+@pytest.mark.costly
+def test_a_run_takes_any_seed_and_goes_on_where_one_ended_before_its_first_row(plans: Path, tmp_path: Path):
+    (tmp_path / "train.csv").write_text("goals,steps,episodes\n")
+    Run(
+        Args(plans=(plans,), out=tmp_path, goals=1, envs=2, rollout=2, batch=2, seed=2**63 - 1), [*plans.glob("*.npz")]
+    ).train()
+    assert (tmp_path / "curve.png").read_bytes()[:4] == b"\x89PNG"
+    assert (tmp_path / "semexp.safetensors").is_file()
