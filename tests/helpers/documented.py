@@ -126,10 +126,6 @@ class Only:
 
 
 _RUN = "stubborn run"
-_WISH = (
-    f"{_RUN} --agent stubborn-plus --semantics gt --house assets/mjcf_houses/val/val_02.xml "
-    "--goal 'the rocking chair in the bedroom'"
-)
 _SMALL = "--house examples/my_house.xml --goal sofa"
 _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 LAB_PYTHON = ".venv-habitat/bin/python"
@@ -217,7 +213,87 @@ _MY_NETWORK = (
     _VIEWS.replace(" --shrink 4", ""),
     f"{PYTHON} -m examples.train_my_network --views {{tmp}}/views --minutes 0.01 --out {{tmp}}/my_network.pt",
 )
+_FILES = {
+    "runs/rednet/rednet.safetensors": _SHIPPED,
+    "runs/verifier.json": "stubborn/detection/verifiers/rednet.json",
+    "runs/fusion.json": "stubborn/detection/fusions/rednet.json",
+    "runs/context.json": "stubborn/detection/context.json",
+    "runs/semexp/semexp.safetensors": "stubborn/exploration/weights/semexp.safetensors",
+    "old/bin/python my_agent.py": f"{sys.executable} tests/helpers/client_agent.py",
+    "--agent my_agent:make": "--agent examples.my_agent:make",
+}
+"""What a reader has made or written, and what a short run takes instead."""
+
+
+def _short(command: str) -> tuple[str]:
+    """Returns the trial of a documented run: one episode of five steps, in a small house if the run names no other."""
+    for documented, tried in _FILES.items():
+        command = command.replace(documented, tried)
+    words = [word for word in shlex.split(command) if not word.startswith("task.max_steps=")]
+    for option, value in (("--episodes", "1"), ("--workers", "1"), ("--out", "{tmp}/run")):
+        if option in words:
+            words[words.index(option) + 1] = value
+        elif option == "--out" or (option == "--episodes" and "--only" not in words):
+            words += [option, value]
+    if not {"--split", "--house", "--goal", "--only"} & set(words):
+        words += shlex.split(_SMALL)
+    if "--config" not in words:
+        words.append("--config")
+    words.insert(words.index("--config") + 1, "task.max_steps=5")
+    return (shlex.join(words),)
+
+
+_RUNS = (
+    "--episodes 20 --workers 2",
+    "--agent 'process:old/bin/python my_agent.py'",
+    "--agent semexp --semantics gt --config agent.explorer.semantics=shuffled --episodes 5",
+    "--agent semexp --semantics gt --config agent.explorer.goal=wrong --episodes 5",
+    "--agent stubborn-plus --episodes 200 --record --workers 2 --out runs/plus",
+    "--agent stubborn-plus --semantics gt --house assets/mjcf_houses/val/val_02.xml --goal 'the rocking chair"
+    " in the bedroom' --episodes 3 --video",
+    "--agent stubborn-plus --split words-seen --episodes 40",
+    "--agent stubborn-plus --semantics gt --split words-seen --episodes 20",
+    "--agent stubborn-plus --semantics gt --split chains-val --episodes 5",
+    "--agent stubborn-plus --semantics gt --split chains-val --episodes 5 --config agent.memory=false",
+    "--agent stubborn-plus --semantics gt --split pictures --episodes 20",
+    "--agent stubborn-plus --config agent.seeker.look.visit=0.2 agent.seeker.context_share=0 --episodes 100"
+    " --out runs/changed",
+    "--agent examples.my_agent:AGENT --semantics gt --episodes 20 --workers 2 --out runs/first_seeing",
+    "--agent examples.map_agent:AGENT --semantics gt --episodes 20 --workers 2 --out runs/first_map",
+    "--agent examples.map_agent:AGENT --semantics gt --only val_0003 --video --out runs/first_failure",
+    "--house examples/my_flat.xml --goal bed --agent oracle --episodes 2 --video --out runs/flat_oracle",
+    "--house examples/my_flat.xml --goal 'the blue sofa' --agent stubborn-plus --semantics gt --episodes 2",
+    "--agent cloned --semantics gt --episodes 20 --workers 2 --out runs/cloned20",
+    "--agent random --episodes 20 --workers 2 --out runs/random20",
+    "--house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1",
+    "--semantics gt --noise harsh --episodes 100 --workers 2 --record --out runs/harsh",
+    "--semantics rednet --weights runs/rednet/rednet.safetensors",
+    "--split traps --semantics gt --episodes 21",
+    "--video --out runs/filmed",
+    "--only val_0018 val_0003 --video --out runs/two",
+    "--mcap --out runs/ros",
+    "--agent stubborn --split val --episodes 120 --out runs/default",
+    "--agent stubborn --split val --episodes 120 --config agent.target.least_cells=1 agent.mapping.rim_px=0"
+    " --out runs/paper_way",
+    "--agent my_agent:make --semantics gt --episodes 2 --video --out runs/me",
+    "--agent stubborn-plus --semantics gt --goal toilet",
+    "--semantics gt --config robot.body.radius_m=0.20 camera.height_m=0.5 camera.hfov_rad=1.7",
+    "--agent stubborn-plus --split val --episodes 100 --out runs/plus_val",
+    "--agent stubborn-plus --semantics gt --split hazards --episodes 75 --out runs/plus_hazards",
+    "--semantics gt --episodes 100 --out runs/before",
+    "--semantics gt --episodes 100 --explorer tour --out runs/after",
+    "--agent examples.my_agent:AGENT --config agent.keep_m=1.0",
+    "--semantics gt --config agent.planning.dilation_m=0.10 agent.collisions.wide_m=0.35",
+    "--semantics gt --explorer informed-tour",
+    "--weights runs/rednet/rednet.safetensors --verifier runs/verifier.json",
+    "--agent stubborn-plus --weights runs/rednet/rednet.safetensors --config"
+    " agent.seeker.tracks.evidence.fusion=runs/fusion.json agent.seeker.context=runs/context.json",
+    "--agent semexp --config agent.explorer.weights=runs/semexp/semexp.safetensors --episodes 5",
+    "--semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=300",
+)
+"""Options of documented runs for which a short run is tried (`_short`)."""
 TRIALS: dict[str, tuple[str, ...] | Only] = {
+    **{f"{_RUN} {options}": _short(f"{_RUN} {options}") for options in _RUNS},
     "make run": _NEEDS_SETUP,
     "make test": _NEEDS_SETUP,
     "make test-all": _NEEDS_SETUP,
@@ -230,14 +306,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn report runs/mine": (_RECORDED, "stubborn report {tmp}/mine"),
     # docs/index.md
-    f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
     f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
     # docs/agents.md
     "stubborn agent-client --out stubborn_client.py": ("stubborn agent-client --out {tmp}/stubborn_client.py",),
-    f"{_RUN} --agent 'process:old/bin/python my_agent.py'": (
-        f"{_RUN} --agent 'process:{sys.executable} tests/helpers/client_agent.py' {_SMALL} --episodes 1 "
-        "--config task.max_steps=5 --out {tmp}/run",
-    ),
     "stubborn compare runs/before runs/after": _COMPARED,
     # docs/gymnasium.md
     f"{PYTHON} -m examples.gym_agents": (f"{PYTHON} -m examples.gym_agents",),
@@ -255,13 +326,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn houses plans --pool train --first-seed 0 --houses 240 --out runs/plans/train --workers 2": (
         "stubborn houses plans --pool train --first-seed 0 --kind studio --houses 1 --workers 1 --out {tmp}/plans",
     ),
-    **{
-        f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} --episodes 5": (
-            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} task.max_steps=30 {_SMALL} "
-            "--episodes 1 --out {tmp}/run",
-        )
-        for control in ("semantics=shuffled", "goal=wrong")
-    },
     f"{_RUN} --agent oracle --split train --episodes 2000 --record --out runs/shown/oracle": (_SHOWN,),
     f"{PYTHON} -m tools.training.render_demonstrations runs/shown/oracle --out runs/demonstrations": (
         _SHOWN,
@@ -304,9 +368,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent vlm --config agent.url=http://localhost:11434/v1 agent.model=qwen2.5vl:7b"
     " agent.cache=runs/replies": Only("tests/sim/app/services/vlm runs the agent with a scripted server"),
     # docs/lerobot.md
-    f"{_RUN} --agent stubborn-plus --episodes 200 --record --workers 2 --out runs/plus": (
-        f"{_RUN} --agent stubborn-plus {_SMALL} --episodes 1 --record --workers 1 --out {{tmp}}/plus",
-    ),
     "stubborn export lerobot runs/plus --out runs/plus_lerobot --only-success": Only(
         "needs pyarrow; tests/sim/app/bridges/test_lerobot.py exports runs"
     ),
@@ -319,32 +380,13 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "{tmp}/splits.md",
     ),
     # docs/words.md
-    f"{_WISH} --episodes 3 --video": (f"{_WISH} --episodes 1 --video --config task.max_steps=5 --out {{tmp}}/run",),
     f"{PYTHON} -m tools.research.check_descriptions --split val --per-house 180 --workers 2"
     " --out runs/descriptions.json": (
         f"{PYTHON} -m tools.research.check_descriptions --split val --per-house 2 --houses 1 --workers 1"
         " --out {tmp}/descriptions.json",
     ),
-    f"{_RUN} --agent stubborn-plus --split words-seen --episodes 40": (
-        f"{_RUN} --agent stubborn-plus --split words-seen --episodes 1 --config task.max_steps=5 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 20": (
-        f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 1 --config task.max_steps=5"
-        " --out {tmp}/run",
-    ),
-    **{
-        f"{_RUN} --agent stubborn-plus --semantics gt --split chains-val --episodes 5{option}": (
-            f"{_RUN} --agent stubborn-plus --semantics gt --split chains-val --episodes 1{option or ' --config'}"
-            " task.max_steps=3 --out {tmp}/run",
-        )
-        for option in ("", " --config agent.memory=false")
-    },
     "stubborn words --split val --kind chains --episodes 120 --out assets/mjcf_houses/my_chains": Only(
         "writes beside the shipped houses; tests/sim/app/commands/test_words.py makes a split of one house"
-    ),
-    f"{_RUN} --agent stubborn-plus --semantics gt --split pictures --episodes 20": (
-        f"{_RUN} --agent stubborn-plus --semantics gt --split pictures --episodes 1 --config task.max_steps=5"
-        " --out {tmp}/run",
     ),
     "stubborn words --split val --kind pictures --episodes 150 --out assets/mjcf_houses/my_pictures": Only(
         "writes beside the shipped houses; tests/sim/app/commands/test_words.py makes a split of one house"
@@ -353,40 +395,17 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "writes beside the shipped houses; tests/sim/app/commands/test_words.py makes a split of one house"
     ),
     # docs/stubborn_plus.md
-    f"{_RUN} --agent stubborn-plus --config agent.seeker.look.visit=0.2 agent.seeker.context_share=0 --episodes 100"
-    " --out runs/changed": (
-        f"{_RUN} --agent stubborn-plus --config agent.seeker.look.visit=0.2 agent.seeker.context_share=0"
-        f" task.max_steps=5 {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
     # docs/tutorials
     f"{_RUN} --agent random_agent:make --episodes 2 --video --out runs/random": Only(
         "tests/test_docs.py runs the agent"
     ),
-    **{
-        f"{_RUN} --agent examples.{name}_agent:AGENT --semantics gt --episodes 20 --workers 2 --out runs/first_{run}": (
-            f"{_RUN} --agent examples.{name}_agent:AGENT --semantics gt {_SMALL} --episodes 1 --workers 1"
-            f" --config task.max_steps=60 --out {{tmp}}/first_{run}",
-        )
-        for name, run in (("my", "seeing"), ("map", "map"))
-    },
     "stubborn compare runs/first_seeing runs/first_map": _COMPARED,
     "stubborn compare runs/random20 runs/cloned20": _COMPARED,
     "stubborn report runs/first_map": (_RECORDED, "stubborn report {tmp}/mine"),
-    f"{_RUN} --agent examples.map_agent:AGENT --semantics gt --only val_0003 --video --out runs/first_failure": (
-        f"{_RUN} --agent examples.map_agent:AGENT --semantics gt --only chair_legs_0 --split traps --video"
-        " --config task.max_steps=20 --out {tmp}/first_failure",
-    ),
     "stubborn report runs/pt_truth runs/pt_network": _REPORTED,
     "stubborn houses check --house examples/my_flat.xml": ("stubborn houses check --house examples/my_flat.xml",),
     "stubborn gallery --houses examples/my_flat.xml --out runs/flat_pictures": (
         "stubborn gallery --houses examples/my_flat.xml --out {tmp}/pictures",
-    ),
-    f"{_RUN} --house examples/my_flat.xml --goal bed --agent oracle --episodes 2 --video --out runs/flat_oracle": (
-        f"{_RUN} --house examples/my_flat.xml --goal bed --agent oracle --episodes 1 --video --out {{tmp}}/oracle",
-    ),
-    f"{_RUN} --house examples/my_flat.xml --goal 'the blue sofa' --agent stubborn-plus --semantics gt --episodes 2": (
-        f"{_RUN} --house examples/my_flat.xml --goal 'the blue sofa' --agent stubborn-plus --semantics gt --episodes 1"
-        " --out {tmp}/run",
     ),
     "stubborn episodes --house examples/my_flat.xml --episodes 20 --out runs/flat_split": (_FLAT,),
     f"{_RUN} --split runs/flat_split --agent stubborn-plus --semantics gt --episodes 20 --workers 2": (
@@ -435,13 +454,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         ),
         _PACKAGE,
     ),
-    f"{_RUN} --agent cloned --semantics gt --episodes 20 --workers 2 --out runs/cloned20": (
-        f"{_RUN} --agent cloned --semantics gt {_SMALL} --episodes 1 --workers 1 --config task.max_steps=5"
-        " --out {tmp}/cloned20",
-    ),
-    f"{_RUN} --agent random --episodes 20 --workers 2 --out runs/random20": (
-        f"{_RUN} --agent random {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/random20",
-    ),
     f"{_RUN} --agent 'process:python my_agent.py' --split val --episodes 5 --record --out runs/walker": (_ENTRY,),
     "stubborn submit runs/walker --name Walker --authors 'A. Student' --out walker.json.gz": (
         _ENTRY,
@@ -449,9 +461,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn verify walker.json.gz": (_ENTRY, _SUBMIT, "stubborn verify {tmp}/my_agent.json.gz"),
     # docs/houses.md
-    f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (
-        f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
-    ),
     "stubborn gallery --houses examples/my_house.xml --out runs/my_gallery": (
         "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
     ),
@@ -502,10 +511,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent stubborn-plus --split {{tmp}}/transfer --episodes 1 --config task.max_steps=5"
         " --out {tmp}/run",
     ),
-    f"{_RUN} --semantics gt --noise harsh --episodes 100 --workers 2 --record --out runs/harsh": (
-        f"{_RUN} --semantics gt --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record"
-        " --out {tmp}/harsh",
-    ),
     "stubborn report runs/harsh": (_RECORDED, "stubborn report {tmp}/mine"),
     "stubborn report runs/before runs/after": _REPORTED,
     "stubborn gallery --houses assets/mjcf_houses/val/val_03.xml --out runs/gallery": (
@@ -555,9 +560,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn evaluate --views {tmp}/views --semantics examples.my_segmentation:SEGMENTATION"
         " --config detector.weights={tmp}/my_network.pt",
     ),
-    f"{_RUN} --semantics rednet --weights runs/rednet/rednet.safetensors": (
-        f"{_RUN} --semantics rednet --weights {_SHIPPED} {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
     "stubborn evaluate --views views_val --calibrate --card card.md --weights runs/rednet/rednet.safetensors": (
         _VIEWS.replace("shard 4", "shard 2"),
         f'{PYTHON} -c \'import shutil; shutil.copy("stubborn/segmentation/weights/rednet.safetensors", "{{tmp}}")\'',
@@ -591,22 +593,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn leaderboard leaderboard": Only(_ROWS),
     "stubborn leaderboard challenge --splits revealed/sealed2027": Only(_ROWS),
     # docs/traps.md
-    f"{_RUN} --split traps --semantics gt --episodes 21": (
-        f"{_RUN} --split traps --semantics gt --episodes 1 --agent oracle --out {{tmp}}/run",
-    ),
     "stubborn episodes --split my_traps --recipe traps": _MY_TRAPS,
     "stubborn traps report --split my_traps --out runs/my_traps": (
         *_MY_TRAPS,
         "stubborn traps report --split {tmp}/traps --agents oracle --headings 1 --out {tmp}/report",
     ),
     # docs/watching.md
-    f"{_RUN} --video --out runs/filmed": (f"{_RUN} {_SMALL} --episodes 1 --video --out {{tmp}}/filmed",),
-    f"{_RUN} --only val_0018 val_0003 --video --out runs/two": (
-        f"{_RUN} --only chair_legs_0 --split traps --agent oracle --semantics gt --video --out {{tmp}}/two",
-    ),
     f"{_RUN} --view --episodes 2": Only("needs a display; tests/sim/test_live.py plays without one"),
     f"{_RUN} --rerun-save --out runs/logged": Only("needs the extra rerun; tests/sim/test_live.py where it is there"),
-    f"{_RUN} --mcap --out runs/ros": (f"{_RUN} --agent oracle {_SMALL} --mcap --episodes 1 --out {{tmp}}/ros",),
     f"{_RUN} --rerun --episodes 2": Only("needs a display and the extra rerun"),
     "stubborn web --agent examples.my_agent:AGENT --house examples/my_house.xml": Only(
         "serves until it is interrupted; tests/sim/app/web/test_choices.py chooses an agent and a house so"
@@ -630,14 +624,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
     # docs/differences.md
-    f"{_RUN} --agent stubborn --split val --episodes 120 --out runs/default": (
-        f"{_RUN} --agent stubborn --split val --episodes 1 --config task.max_steps=3 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent stubborn --split val --episodes 120 --config agent.target.least_cells=1"
-    " agent.mapping.rim_px=0 --out runs/paper_way": (
-        f"{_RUN} --agent stubborn --split val --episodes 1 --config agent.target.least_cells=1 agent.mapping.rim_px=0"
-        " task.max_steps=3 --out {tmp}/run",
-    ),
     "stubborn compare runs/default runs/paper_way": _COMPARED,
     # docs/motions.md
     "stubborn reproduce motions --semantics gt --split val --episodes 100 --workers 2": (
@@ -647,65 +633,22 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn reproduce splits --episodes 100 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",
     ),
-    f"{_RUN} --agent my_agent:make --semantics gt --episodes 2 --video --out runs/me": (
-        f"{_RUN} --agent examples.my_agent:make --semantics gt --video {_SMALL} --episodes 1 --out {{tmp}}/me",
-    ),
     "stubborn report runs/me": (_RECORDED, "stubborn report {tmp}/mine"),
-    f"{_RUN} --agent stubborn-plus --semantics gt --goal toilet": (
-        f"{_RUN} --agent oracle --semantics gt --goal toilet --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=300": (
-        f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=3 {_SMALL}"
-        f" --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --semantics gt --config robot.body.radius_m=0.20 camera.height_m=0.5 camera.hfov_rad=1.7": (
-        f"{_RUN} --semantics gt --config robot.body.radius_m=0.20 camera.height_m=0.5"
-        " camera.hfov_rad=1.7 task.max_steps=3"
-        f" {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
     f"{_RUN} --config-file my_settings.toml": (
         f'{PYTHON} -c \'from pathlib import Path; Path("{{tmp}}/my.toml").write_text("[task]\\nmax_steps = 3\\n")\'',
         f"{_RUN} --config-file {{tmp}}/my.toml --semantics gt --episodes 1 {_SMALL} --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent stubborn-plus --split val --episodes 100 --out runs/plus_val": (
-        f"{_RUN} --agent stubborn-plus --split val --episodes 1 --config task.max_steps=3 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent stubborn-plus --semantics gt --split hazards --episodes 75 --out runs/plus_hazards": (
-        f"{_RUN} --agent stubborn-plus --semantics gt --split hazards --episodes 1 --config task.max_steps=3"
-        " --out {tmp}/run",
-    ),
-    f"{_RUN} --semantics gt --episodes 100 --out runs/before": (
-        f"{_RUN} --semantics gt {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/before",
-    ),
-    f"{_RUN} --semantics gt --episodes 100 --explorer tour --out runs/after": (
-        f"{_RUN} --semantics gt {_SMALL} --episodes 1 --explorer tour --out {{tmp}}/after",
     ),
     "stubborn reproduce splits --splits val hazards --agents stubborn 'stubborn --explorer tour'": (
         "stubborn reproduce splits --splits val hazards --agents oracle random --episodes 1 --out {tmp}/paper",
     ),
     f"{_RUN} --episodes 1000 --shard 1/2 --out runs/big": (_SHARDS[0],),
     f"{_RUN} --episodes 1000 --shard 2/2 --out runs/big": (_SHARDS[1],),
-    f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0": (
-        f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 {_SMALL} --semantics gt"
-        f" --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 agent.collisions.wide_m=0.35": (
-        f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 agent.collisions.wide_m=0.35 {_SMALL}"
-        " --episodes 1 --out {tmp}/run",
-    ),
-    f"{_RUN} --semantics gt --explorer informed-tour": (
-        f"{_RUN} --semantics gt --explorer informed-tour {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
     "stubborn houses generate --furniture runs/models --furniture-split transfer --only-imported --houses 60"
     " --out runs/unseen": _UNSEEN[:-1],
     "stubborn episodes --split runs/unseen --recipe val --episodes 720": _UNSEEN,
     "stubborn train verifier --semantics rednet --weights runs/rednet/rednet.safetensors --split runs/unseen"
     " --episodes 720 --out runs/verifier.json": Only(
         "runs until there are enough candidates; tests/sim/app/commands/test_train_verifier.py runs a few episodes"
-    ),
-    f"{_RUN} --weights runs/rednet/rednet.safetensors --verifier runs/verifier.json": (
-        f"{_RUN} --weights {_SHIPPED} --verifier stubborn/detection/verifiers/rednet.json {_SMALL} --episodes 1"
-        " --out {tmp}/run",
     ),
     "stubborn train fusion --weights runs/rednet/rednet.safetensors --split runs/unseen --episodes 72"
     " --out runs/fusion.json": (
@@ -723,13 +666,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         *_PLANS,
         "stubborn train context --plans {tmp}/plans --out {tmp}/context.json",
     ),
-    f"{_RUN} --agent stubborn-plus --weights runs/rednet/rednet.safetensors --config"
-    " agent.seeker.tracks.evidence.fusion=runs/fusion.json agent.seeker.context=runs/context.json": (
-        f"{_RUN} --agent stubborn-plus --weights {_SHIPPED} --config"
-        " agent.seeker.tracks.evidence.fusion=stubborn/detection/fusions/rednet.json"
-        f" agent.seeker.context=stubborn/detection/context.json {_SMALL} --episodes 1"
-        " --out {tmp}/run",
-    ),
     "stubborn train poni --plans runs/plans/train --minutes 30 --out runs/poni": (
         *_PLANS,
         "stubborn train poni --plans {tmp}/plans --minutes 0.05 --out {tmp}/poni",
@@ -737,10 +673,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn train semexp --plans runs/plans/train --minutes 90 --out runs/semexp": (
         *_PLANS,
         "stubborn train semexp --plans {tmp}/plans --minutes 0.05 --out {tmp}/semexp",
-    ),
-    f"{_RUN} --agent semexp --config agent.explorer.weights=runs/semexp/semexp.safetensors --episodes 5": (
-        f"{_RUN} --agent semexp --config agent.explorer.weights=stubborn/exploration/weights/semexp.safetensors"
-        f" {_SMALL} --semantics gt --episodes 1 --out {{tmp}}/run",
     ),
     "stubborn import furniture --source my_models --out runs/models": _MODELS,
     "stubborn import furniture infinigen --python infinigen/bin/python --out runs/infinigen": Only(

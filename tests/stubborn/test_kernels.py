@@ -16,7 +16,6 @@ from stubborn.kernels.frames import enter_bits, shows_no_noise
 from stubborn.kernels.grids import bilinear, distance_within
 from stubborn.mapping.masks import connected, distance_to, farther_than
 from stubborn.mapping.navmap import NavMap
-from stubborn.mapping.object_layers import FrameScores
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces
 from stubborn.mapping.projection import Rays, in_range, sight_window_cells
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -63,14 +62,6 @@ def test_a_noisy_image_is_smoothed_along_surfaces_only(seed: int) -> None:
     assert np.array_equal(surfaces.neighbours, count)
     assert np.array_equal(surfaces.depth, change + depth)
     assert np.array_equal(surfaces.confirmed(3), count >= 3)
-
-
-def test_an_exact_image_is_left_alone_and_all_of_it_counts() -> None:
-    depth = depth_image(np.random.default_rng(0), noise_m=0.0)
-    surfaces = Surfaces.of(depth, OccupancyConfig())
-    assert surfaces.exact
-    assert surfaces.depth is depth
-    assert surfaces.confirmed(8).all()
 
 
 def test_pixels_are_projected_as_float32_arithmetic_has_it() -> None:
@@ -216,24 +207,6 @@ def test_the_ground_truth_scores_the_goal_and_all_other_categories_but_void() ->
     for goal in ("void", "unicorn"):
         with pytest.raises(ConfigError, match=f"no category '{goal}'. Available: wall, floor, "):
             GroundTruthSegmenter().scores({"semantic": semantic}, goal)
-
-
-@pytest.mark.parametrize("hits", [0.0, 0.2])
-def test_a_cell_has_the_highest_target_score_and_the_highest_other_score_of_its_pixels(hits: float) -> None:
-    rng = np.random.default_rng(2)
-    flat = rng.integers(-1, 40, (10, 20)).astype(np.int32)
-    rows, cols = np.where(flat < 0, -1, flat // 8), np.where(flat < 0, -1, flat % 8)
-    target, other = (rng.random((2, 10, 20)) * (rng.random((2, 10, 20)) < [[[hits]], [[1.0]]])).astype(np.float32)
-    frame = FrameScores((5, 8), rows, cols, target, other)
-    flat, target, other = flat.reshape(-1), target.reshape(-1), other.reshape(-1)
-    for cell in range(40):
-        here = np.flatnonzero(flat == cell)
-        highest = target[here].max(initial=0.0)
-        assert frame.in_view.reshape(-1)[cell] == bool(here.size)
-        assert frame.other.reshape(-1)[cell] == other[here].max(initial=0.0)
-        if frame.target is not None:
-            assert frame.target.reshape(-1)[cell] == highest
-    assert (frame.target is None) == (hits == 0.0)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.001, 0.05])

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sim.core.geometry.fast_marching import travel_times
 from sim.core.geometry.grid import GridFrame
 from sim.core.geometry.pose import Pose
 from sim.core.interface import TURN_RAD, Action, ConfigError
@@ -86,19 +85,6 @@ def test_an_unreachable_cell_is_infinite_and_a_goal_there_has_no_plan():
     assert plan is not None
     assert np.isinf(plan.distance_m[15, 13])
     assert np.isinf(plan.distance_m[free.clearance_m == 0]).all()
-
-
-def test_fast_marching_without_a_goal_reaches_nothing_and_a_goal_alone_is_zero():
-    free = np.ones((3, 4), bool)
-    assert (travel_times(free, free, np.ones((3, 4)), 0.05) == 0).all()
-    only = np.zeros((3, 4), bool)
-    only[1, 1] = True
-    distance = travel_times(only, only, np.ones((3, 4)), 0.05)
-    parted = np.array([[True, True, False, True]])
-    beyond = travel_times(parted & [True, False, False, False], parted, np.ones((1, 4)), 0.05)
-    np.testing.assert_array_equal(np.isinf(beyond), [[False, False, True, True]])
-    assert distance[1, 1] == 0
-    assert np.isinf(distance[~only]).all()
 
 
 def test_obstacles_are_dilated_by_fifteen_centimetres():

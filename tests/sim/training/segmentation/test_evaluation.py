@@ -9,7 +9,6 @@ import torch
 from sim.core.interface import MPCAT40_ID
 from sim.training.segmentation.evaluation import GOAL_CHANNELS, Confusions, Iou, Reliability, calibrated_iou, confusion
 from sim.training.segmentation.samples import IGNORED
-from stubborn.segmentation.calibration import fit_temperature
 from stubborn.segmentation.rednet import CLASSES
 
 
@@ -39,13 +38,6 @@ def test_only_an_overconfident_score_has_a_calibration_error() -> None:
     ((count, score, right),) = honest.rows()
     assert (count, score) == (20_000, pytest.approx(0.7))
     assert right == pytest.approx(0.7, abs=0.01)
-
-
-def test_the_temperature_of_overconfident_logits_is_found() -> None:
-    torch.manual_seed(0)
-    honest = torch.randn(5000, 5)
-    truth = torch.distributions.Categorical(logits=honest).sample()
-    assert fit_temperature(3.0 * honest, truth) == pytest.approx(3.0, rel=0.08)
 
 
 def test_a_constant_error_of_the_logits_is_calibrated_away_on_views_that_it_was_not_fitted_to() -> None:

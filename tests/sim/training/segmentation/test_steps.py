@@ -9,13 +9,10 @@ import pytest
 import torch
 from torch.optim.swa_utils import AveragedModel
 
-from sim.core.interface import CameraModel
-from sim.training.segmentation.evaluation import Iou, confusion
-from sim.training.segmentation.samples import IGNORED, Sampler
+from sim.training.segmentation.samples import IGNORED
 from sim.training.segmentation.steps import exponential_average, pyramid_loss, root_class_weights, set_normalisation
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
 from tests.helpers import wording
-from tests.helpers.labelled_views import a_view
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
 
@@ -81,24 +78,6 @@ def test_root_weights_fall_with_the_square_root_of_the_share_up_to_a_ratio() -> 
     assert float(weights[2] / weights[0]) == pytest.approx(5.0)
     assert float(weights[3]) == 0.0
     assert float(weights[:3].mean()) == pytest.approx(1.0)
-
-
-@pytest.mark.costly
-def test_a_tiny_network_can_be_fitted_to_one_view() -> None:
-    torch.manual_seed(0)
-    model = RedNet(TINY)
-    rgb, depth, target = (
-        t[None].repeat(2, *[1] * t.dim()) for t in Sampler(CameraModel())(a_view(), np.random.default_rng(0))
-    )
-    optimiser = torch.optim.AdamW(model.parameters(), lr=1e-2)
-    for _ in range(25):
-        optimiser.zero_grad()
-        loss = pyramid_loss(model.pyramid(rgb, depth), target, torch.ones(CLASSES))
-        loss.backward()
-        optimiser.step()
-    model.eval()
-    iou = Iou.of(confusion(model(rgb, depth).argmax(1).numpy(), target.numpy()))
-    assert iou.accuracy > 0.85
 
 
 def test_the_average_forgets_the_initial_weights_and_then_changes_slowly() -> None:

@@ -213,7 +213,9 @@ def test_our_reader_and_webdataset_return_the_stored_arrays(views: list[View], s
                              ("instances", view.instances), ("normals", view.normals)):  # fmt: skip
             np.testing.assert_array_equal(other[f"{name}.png"], stored)
         assert mine.instances is not None
-        np.testing.assert_array_equal(mine.instances, view.instances)
+        np.testing.assert_array_equal(np.rint(1000 * mine.depth_m), view.depth_mm)
+        for name in ("rgb", "semantic", "instances"):
+            np.testing.assert_array_equal(getattr(mine, name), getattr(view, name))
         assert mine.normals is not None
         assert np.abs(127.5 * (mine.normals + 1.0) - view.normals)[view.normals.any(axis=-1)].max() < 1e-3
         assert mine.annotations == view.annotations == other["coco.json"]

@@ -14,12 +14,10 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-import webdataset
 
 from sim.core.interface import MPCAT40_ID, CameraModel, ConfigError
 from sim.env.scene import Scene
 from sim.robot.config import RobotConfig
-from sim.training.segmentation.dataset import read_shard
 from sim.training.views import shards
 from sim.training.views.shards import PNG_OPTIONS, read_note, write_index, write_shard
 from sim.training.views.views import View, is_bare, sample_views
@@ -98,27 +96,6 @@ def test_the_same_seed_gives_the_same_bytes_and_another_one_others(scene: Scene,
     assert (tmp_path / "a/views-000000.tar").read_bytes() == (tmp_path / "b/views-000000.tar").read_bytes()
     with tarfile.open(tmp_path / "a/views-000000.tar") as archive:
         assert {(entry.mtime, entry.uid, entry.uname) for entry in archive} == {(0, 0, "")}
-
-
-def test_webdataset_and_our_reader_see_the_same_views(scene: Scene, tmp_path: Path) -> None:
-    views = views_of(scene)
-    write_shard(tmp_path, "views-000000", views, house="room", config={}, rgb_format="png")
-    ours = list(read_shard(tmp_path / "views-000000.tar"))
-    theirs = list(
-        webdataset.WebDataset(  # pyright: ignore[reportAttributeAccessIssue] - no stub
-            str(tmp_path / "views-000000.tar"), shardshuffle=False
-        )
-    )
-    assert [view.key for view in ours] == [sample["__key__"] for sample in theirs] == [view.key for view in views]
-    for view, mine, other in zip(views, ours, theirs, strict=True):
-        assert np.array_equal(mine.rgb, view.rgb)
-        assert np.array_equal(np.rint(mine.depth_m * 1000), view.depth_mm)
-        assert np.array_equal(mine.semantic, view.semantic)
-        assert mine.record == view.record == json.loads(other["json"])
-        depth = cv2.imdecode(np.frombuffer(other["depth.png"], np.uint8), cv2.IMREAD_UNCHANGED)
-        assert depth is not None
-        assert depth.dtype == np.uint16
-        assert np.array_equal(depth, view.depth_mm)
 
 
 def test_images_are_stored_without_loss_and_smaller_than_opencvs_own_choice_makes_them(scene: Scene) -> None:
