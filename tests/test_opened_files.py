@@ -161,12 +161,6 @@ def test_a_tar_file_of_hostile_headers_is_refused_soon(content: bytes, tmp_path:
     assert time.process_time() - began_s < 3.0
 
 
-def test_a_checkpoint_that_is_a_pipe_is_refused_without_waiting(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "weights.pth")
-    with pytest.raises(ConfigError, match="not a plain file"):
-        read_checkpoint(tmp_path / "weights.pth")
-
-
 def test_weights_of_whole_numbers_are_refused(tmp_path: Path) -> None:
     layer = nn.Linear(2, 2)
     whole = {name: tensor.to(torch.int16) for name, tensor in layer.state_dict().items()}

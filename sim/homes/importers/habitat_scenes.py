@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError, HouseError
 from sim.core.reading import printable, read_json
-from sim.gl import mujoco
 from sim.homes.importers.floors import LEVEL_M, PLAN_CELL_M, Plan, find_levels
 from sim.homes.importers.habitat_files import (  # fmt: skip
     SCENE,
@@ -33,7 +32,7 @@ from sim.homes.importers.habitat_files import (  # fmt: skip
 )
 from sim.homes.importers.habitat_names import UNKNOWN, category_of
 from sim.homes.importers.losses import Losses
-from sim.homes.importers.mesh_house import STRUCTURE, MeshObject, RoomArea, Shape, require_few
+from sim.homes.importers.mesh_house import STRUCTURE, MeshObject, RoomArea, Shape, require_few, rotation_matrix
 from sim.homes.importers.surfaces import Y_UP, Surface, read_surfaces
 
 PUSHED_KG = 15.0
@@ -181,9 +180,7 @@ def _rotation(rotation: Sequence[float], where: str) -> tuple[NDArray[np.float64
     if length < 1e-6:
         raise HouseError(f"{where}: a rotation must be a quaternion that is not zero, got {list(rotation)}.")
     quaternion = (w / length, x / length, -z / length, y / length)
-    turn = np.empty(9)
-    mujoco.mju_quat2Mat(turn, np.asarray(quaternion))
-    return turn.reshape(3, 3), quaternion
+    return rotation_matrix(quaternion), quaternion
 
 
 def _frame(attributes: Attributes, where: str) -> NDArray[np.float64]:
@@ -214,11 +211,7 @@ def _centre(attributes: Attributes, shape: Shape, scale: Sequence[float]) -> NDA
 
 def _parts_of_stage(stage: MeshObject, objects: Sequence[MeshObject]) -> list[MeshObject]:
     """Returns the parts of the building, in the world: by the names of nodes and materials, else by geometry."""
-    turn = np.empty(9)
-    mujoco.mju_quat2Mat(turn, np.asarray(stage.quaternion))
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = turn.reshape(3, 3), stage.position_m
-    surfaces = [surface.moved(pose) for surface in stage.shape.surfaces]
+    surfaces = stage.surfaces_in_world
     named = [_category_of_part(surface) for surface in surfaces]
     if "floor" in named:
         return [

@@ -28,7 +28,7 @@ from sim.homes.housegen.imported.meshes import areas
 from sim.homes.importers.collision import collision_boxes, convex_parts
 from sim.homes.importers.floors import LEVEL_M, Storey, find_levels, level_triangles, make_storeys
 from sim.homes.importers.losses import Losses
-from sim.homes.importers.surfaces import MAX_TRIANGLES, Surface
+from sim.homes.importers.surfaces import MAX_TRIANGLES, Surface, resized
 from sim.homes.importers.visual import Skin, make_skins
 
 Collision = Literal["boxes", "convex"]
@@ -95,9 +95,21 @@ class MeshObject:
     @property
     def corners_m(self) -> NDArray[np.float64]:
         """All triangles (m, 3, 3) in the world."""
-        turn = np.empty(9)
-        mujoco.mju_quat2Mat(turn, np.asarray(self.quaternion, dtype=np.float64))
-        return self.shape.corners_m @ turn.reshape(3, 3).T + np.asarray(self.position_m)
+        return self.shape.corners_m @ rotation_matrix(self.quaternion).T + np.asarray(self.position_m)
+
+    @property
+    def surfaces_in_world(self) -> list[Surface]:
+        """Its surfaces, moved to its place."""
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = rotation_matrix(self.quaternion), self.position_m
+        return [surface.moved(pose) for surface in self.shape.surfaces]
+
+
+def rotation_matrix(quaternion: Sequence[float]) -> NDArray[np.float64]:
+    """Returns the matrix (3, 3) of a unit quaternion w, x, y, z."""
+    turn = np.empty(9)
+    mujoco.mju_quat2Mat(turn, np.asarray(quaternion, dtype=np.float64))
+    return turn.reshape(3, 3)
 
 
 @dataclass(frozen=True)
@@ -278,12 +290,8 @@ class _Builder:
 
     def _flattened(self, item: MeshObject) -> MeshObject:
         """Returns a floor in the world; vertices near a storey are moved to its level, those of rugs just above it."""
-        turn = np.empty(9)
-        mujoco.mju_quat2Mat(turn, np.asarray(item.quaternion, dtype=np.float64))
-        pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = turn.reshape(3, 3), item.position_m
         made, most_m = [], 0.0
-        for surface in (part.moved(pose) for part in item.shape.surfaces):
+        for surface in item.surfaces_in_world:
             vertices = surface.vertices_m.copy()
             used = np.zeros(len(vertices), dtype=np.bool_)
             used[surface.faces[level_triangles(surface.corners_m)]] = True
@@ -398,7 +406,7 @@ class _Builder:
     def _texture(self, picture: NDArray[np.uint8]) -> str:
         """Returns the name of the texture of a picture."""
         if id(picture) not in self._textures:
-            small = _resized(picture, self._texture_px)
+            small = resized(picture, self._texture_px)
             name = f"t{len(self._textures):04d}"
             file = f"{self._name}_files/{name}.png"
             self._files[file] = cv2.imencode(".png", small[..., ::-1])[1].tobytes()
@@ -426,16 +434,6 @@ def _texture_px(objects: Sequence[MeshObject], most_px: int) -> int:
 
 def _bytes(picture: NDArray[np.uint8], most_px: int) -> float:
     return picture.nbytes * min(1.0, most_px / max(picture.shape[:2])) ** 2
-
-
-def _resized(picture: NDArray[np.uint8], most_px: int) -> NDArray[np.uint8]:
-    """Returns a picture with at most `most_px` on its longer side."""
-    height, width = picture.shape[:2]
-    share = most_px / max(height, width)
-    if share >= 1.0:
-        return picture
-    size = (max(1, round(width * share)), max(1, round(height * share)))
-    return np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
 def _area_m2(shape: Shape) -> float:

@@ -15,7 +15,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,6 +33,7 @@ from sim.homes.importers.surfaces import (
     Surface,
     is_near,
     read_inside,
+    resized,
 )  # fmt: skip
 
 MAX_MATERIALS = 10_000
@@ -259,8 +259,4 @@ def _pixels(content: bytes | None, name: str, texture_px: int, losses: Counter[s
     except HouseError as fault:
         losses[f"{fault} It was left out."] += 1
         return None
-    factor = texture_px / max(picture.shape[:2])
-    if factor < 1.0:
-        size = max(1, round(picture.shape[1] * factor)), max(1, round(picture.shape[0] * factor))
-        picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
-    return np.ascontiguousarray(picture[..., ::-1], np.uint8)
+    return np.ascontiguousarray(resized(picture, texture_px)[..., ::-1])

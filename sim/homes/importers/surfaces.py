@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -236,6 +237,16 @@ def _pixels(image: Any, texture_px: int | None, losses: Counter[str]) -> NDArray
         share = texture_px / max(width, height)
         small = small.resize((max(1, round(width * share)), max(1, round(height * share))), 4)  # 4: mean of the pixels
     return np.asarray(small, dtype=np.uint8)
+
+
+def resized(picture: NDArray[np.uint8], most_px: int) -> NDArray[np.uint8]:
+    """Returns a picture with at most `most_px` along its longer side."""
+    height, width = picture.shape[:2]
+    share = most_px / max(height, width)
+    if share >= 1.0:
+        return picture
+    size = (max(1, round(width * share)), max(1, round(height * share)))
+    return np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
 def _face_ids(mesh: Any) -> NDArray[np.int64] | None:

@@ -118,7 +118,13 @@ def test_a_third_party_scene_is_labelled_by_its_rules(tmp_path):
 
 @pytest.mark.parametrize(
     ("content", "message"),
-    [("{", "not JSON"), ("[1]", "one JSON object"), ('{"a": 1}', "one JSON object"), ('{"a": "chairs"}', "'chair'")],
+    [
+        ("{", "not JSON"),
+        ("[1]", "one JSON object"),
+        ('{"a": 1}', "one JSON object"),
+        ('{"a": "chairs"}', "'chair'"),
+        ('{"a": "qq"}', "mpcat40"),
+    ],
 )
 def test_wrong_rules_are_refused_by_name(tmp_path, content, message):
     rules = tmp_path / "map.json"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import gzip
 import json
 import re
@@ -35,6 +36,7 @@ from sim.houses.load import load_house
 from sim.houses.proposals import geom_box
 from sim.world.check import check_own_house
 from tests.helpers import wording
+from tests.helpers.messages import require_result_or_one_line
 from tests.helpers.scanned import trimesh, write_dataset, write_episodes, write_hm3d, write_mp3d
 
 SAMPLES = Path(__file__).parents[5] / "shared" / "worlds" / "habitat"
@@ -220,8 +222,6 @@ def test_broken_scans_are_one_line_with_file_and_place(tmp_path: Path) -> None:
     for number in ("x", str(2**63), "9" * 5000):
         (scan / "two.house").write_text(text.replace("O 3 ", f"O {number} "))
         assert "is not a line of this format" in failure(scan)
-    (scan / "two.house").write_text(text.replace("O 3 ", "O x "))
-    assert "is not a line of this format" in failure(scan)
     (scan / "two.house").write_text(text)
     ply = (scan / "two_semantic.ply").read_bytes()
     (scan / "two_semantic.ply").write_bytes(ply.replace(b"object_id", b"object_ix"))
@@ -319,13 +319,7 @@ def test_any_annotations_are_read_or_one_line(tmp_path_factory: pytest.TempPathF
     for head, read in (("HM3D Semantic Annotations\n", lambda path: read_hm3d_text(path, Losses())),
                        ("ASCII 1.1\n", read_house_text)):  # fmt: skip
         file.write_text(head + text)
-        fault = ""
-        try:
-            read(file)
-        except HouseError as error:
-            fault = str(error)
-        assert "\n" not in fault
-        assert "line" in fault or not fault
+        require_result_or_one_line(functools.partial(read, file), "line")
 
 
 @pytest.mark.skipif(not SAMPLES.is_dir(), reason="the samples are not here")
