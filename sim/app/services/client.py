@@ -114,7 +114,7 @@ class Client:
         for attempt in range(self._config.retries + 1):
             time.sleep(WAIT_S if attempt else 0.0)
             try:
-                data = _post(url, body, headers, self._config.timeout_s)
+                data = post(url, body, headers, self._config.timeout_s)
                 value = read(data)
             except ConfigError as error:
                 problem = str(error)
@@ -136,11 +136,11 @@ class Client:
         return self._config.cache / name[:2] / name
 
 
-def _post(url: str, body: bytes, headers: Mapping[str, str], timeout_s: float) -> bytes:
+def post(url: str, body: bytes, headers: Mapping[str, str], timeout_s: float) -> bytes:
     """Returns the body of the reply to a POST request.
 
     Raises:
-        ConfigError: there is no reply in time, it has another status than 200, or it is too long.
+        ConfigError: there is no reply in time, its status is an error, or it is too long.
     """
     request = urllib.request.Request(url, body, method="POST")
     for name, value in headers.items():
@@ -164,7 +164,7 @@ def _post(url: str, body: bytes, headers: Mapping[str, str], timeout_s: float) -
     except (OSError, http.client.HTTPException) as error:
         reason = getattr(error, "reason", error)
         text = f"no reply in {timeout_s:g} s" if isinstance(reason, TimeoutError) else str(reason)
-        raise ConfigError(f"{printable(text)}.") from None
+        raise ConfigError(f"{printable(' '.join(text.split()))}.") from None
     if announced is not None and announced.isdigit() and size != int(announced):
         raise ConfigError(f"its reply ended after {size} of {announced} bytes.")
     return b"".join(parts)

@@ -10,8 +10,6 @@ import io
 import json
 import math
 import threading
-import urllib.error
-import urllib.request
 from collections import deque
 from dataclasses import asdict, dataclass, fields
 
@@ -19,7 +17,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.app.services.client import MAX_BYTES, opener_for
+from sim.app.services.client import MAX_BYTES, is_address, post
 from sim.core.errors import ConfigError
 from sim.core.interface import CameraModel
 from sim.core.reading import parse_json, read_npz
@@ -111,11 +109,12 @@ def register(url: str, frame: Frame) -> None:
     Raises:
         ConfigError: there is no such server, or it refuses the frame.
     """
-    request = urllib.request.Request(f"{url.rstrip('/')}/frame", frame.to_bytes(), method="POST")
+    if not is_address(url):
+        raise ConfigError(f"detectors={url} must be http://HOST:PORT or https://HOST:PORT.")
     try:
-        opener_for(url).open(request, timeout=TIMEOUT_S).close()
-    except (OSError, ValueError, urllib.error.URLError) as error:
-        raise ConfigError(f"detectors={url}: {error}. `stubborn serve detectors` starts the server.") from None
+        post(f"{url.rstrip('/')}/frame", frame.to_bytes(), {}, TIMEOUT_S)
+    except ConfigError as error:
+        raise ConfigError(f"detectors={url}: {error} `stubborn serve detectors` starts the server.") from None
 
 
 class Shelf:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import http.server
 import json
 from dataclasses import replace
 from typing import Any
@@ -26,11 +27,12 @@ from sim.app.services.detectors import (
     true_segments,
 )
 from sim.app.services.forms import read_posteriors, view_bytes
-from sim.app.services.frames import Frame, Shelf, UnknownPictureError
+from sim.app.services.frames import Frame, Shelf, UnknownPictureError, register
 from sim.app.services.server import Answers, make_app
 from sim.app.services.words import categories_in, category_of
 from sim.core.errors import ConfigError
 from sim.core.interface import CameraModel
+from tests.helpers.services import Handler, Start, body_of, closed
 
 HEIGHT, WIDTH = 96, 128
 CHAIR, SOFA = slice(8, 40), slice(60, 100)
@@ -241,3 +243,19 @@ def test_posteriors_are_those_of_the_network_in_process(client: Client) -> None:
     status, text = client.post("/posteriors", view_bytes(one.rgb, one.depth, camera))
     assert status == 400
     assert "--source network" in text
+
+
+def no_http(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+    handler.wfile.write(b"SSH-2.0-OpenSSH\r\n")
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [(no_http, "OpenSSH"), (closed, "closed connection"), (body_of(b"No frame.", 400), "No frame.")],
+)
+def test_a_server_that_does_not_take_frames_is_named(start: Start, answer: Handler, words: str) -> None:
+    url = start(answer).url
+    with pytest.raises(ConfigError, match=f"detectors={url}: .*{words}.* `stubborn serve detectors` starts"):
+        register(url, frame())
+    with pytest.raises(ConfigError, match="must be http"):
+        register(url.removeprefix("http://"), frame())
