@@ -69,3 +69,26 @@ class Ahead:
 
 
 FEELER = AgentSpec(make=make_spy, sensors=("depth", Ahead()), uses_segmentation=False)
+
+
+class Looker:
+    """Tilts its camera once and stops; it notes on the class that it was freed."""
+
+    freed = False
+
+    def reset(self, goal: str, seed: int) -> None:
+        self.actions = [Action.STOP, Action.LOOK_UP]
+
+    def act(self, observation: Observation) -> Action:
+        return self.actions.pop()
+
+    def close(self) -> None:
+        Looker.freed = True
+
+
+def make_looker(**parts: object) -> Looker:
+    """Builds an agent that tilts its camera."""
+    return Looker()
+
+
+LOOKER = AgentSpec(make=make_looker, sensors=("rgb",), uses_segmentation=False, looks=True)

@@ -25,6 +25,7 @@ from sim.robot.config import PHYSICS_VERSION
 from stubborn.agent import StubbornAgent
 from stubborn.agents import ABLATION
 from stubborn.mapping.navmap import NavMap
+from tests.helpers.agents import Looker
 from tests.helpers.sampling import sample
 
 HEADINGS = range(len(START_TURNS_RAD))
@@ -75,6 +76,13 @@ def test_the_report_takes_an_agent_of_the_user(tmp_path: Path) -> None:
     args = Args(out=tmp_path, agents=(agent,), traps=("glass_pane",), headings=1, pictures=False)
     assert main(args) == 0
     assert f"glass_pane,glass_pane_0,{agent},False" in (tmp_path / "traps.csv").read_text()
+
+
+def test_an_agent_of_the_user_may_tilt_its_camera_and_is_freed(tmp_path: Path) -> None:
+    agent = "tests.helpers.agents:LOOKER"
+    args = Args(out=tmp_path, agents=(agent,), traps=("glass_pane",), headings=1, pictures=False)
+    assert main(args) == 0
+    assert Looker.freed
 
 
 def test_an_agent_of_the_user_that_fails_ends_the_report_with_one_sentence(tmp_path: Path) -> None:

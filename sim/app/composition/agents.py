@@ -6,6 +6,7 @@ Your own are named `package.module:NAME`, `habitat:package.module:CLASS` if they
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import inspect
 from collections.abc import Mapping
@@ -20,7 +21,7 @@ from sim.app.evaluation.watch import FACTORY_S, is_stop, marked
 from sim.app.options import HABITAT, is_process
 from sim.app.services.vlm import agent as vlm
 from sim.core.errors import AgentError, ConfigError, ObjectNavError, did_you_mean
-from sim.core.interface import Agent, AgentFactory, AgentSpec, CameraModel, RobotModel, Segmenter, SuccessRule
+from sim.core.interface import Agent, AgentFactory, AgentSpec, CameraModel, Closable, RobotModel, Segmenter, SuccessRule
 from sim.core.paths import assets_dir
 from sim.houses.sidecar import sidecar_path
 from stubborn import agents
@@ -210,6 +211,13 @@ def build_agent(
             raise
         reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
         raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
+
+
+def free_agent(agent: Agent | None) -> None:
+    """Frees what an agent holds, such as a process; errors of the user's code are dropped, as its results are there."""
+    if isinstance(agent, Closable):
+        with contextlib.suppress(Exception):
+            agent.close()
 
 
 def hidden_from_agents(env: KnownRobot, out: Path | None) -> list[Path]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from sim.app.composition.agents import build_agent
+from sim.app.composition.agents import build_agent, free_agent
 from sim.app.composition.environments import make_env
 from sim.app.composition.own_segmentation import OwnSegmenter
 from sim.app.composition.perception import AskedSegmenter, seen_by
@@ -22,7 +21,7 @@ from sim.app.evaluation.watch import is_stop
 from sim.app.viewers import selection
 from sim.app.viewers.viewer import VIEWER_IMAGES, MapPainter, SeesFrames, Viewer
 from sim.core.errors import ConfigError, ObjectNavError, RenderError, debug
-from sim.core.interface import Agent, Closable
+from sim.core.interface import Agent
 from sim.env.memory import give_large_blocks_pages_of_their_own, return_freed_memory
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -164,7 +163,5 @@ class EpisodeRunner:
         """Frees the renderers and the agent; viewers discard an unfinished recording."""
         for viewer in self._viewers:
             viewer.close()
-        if isinstance(self._agent, Closable):
-            with contextlib.suppress(Exception):  # of the user's code
-                self._agent.close()
+        free_agent(self._agent)
         self._env.close()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
 import threading
 import traceback
@@ -12,6 +11,7 @@ from typing import Protocol
 
 from sim.app.analysis.display import counted
 from sim.app.cli import USAGE_ERRORS
+from sim.app.composition.agents import free_agent
 from sim.app.composition.driven import HUMAN
 from sim.app.composition.environments import drawn_episodes
 from sim.app.composition.record import record_of
@@ -30,7 +30,7 @@ from sim.app.web.hints import Hints
 from sim.app.web.pictures import Pictures, in_sight
 from sim.core.errors import EpisodeError, debug
 from sim.core.goals import NO_GOAL, GoalSpec
-from sim.core.interface import GOAL_CATEGORIES, Action, Agent, Closable, Observation, Overridable, StatesTarget
+from sim.core.interface import GOAL_CATEGORIES, Action, Agent, Observation, Overridable, StatesTarget
 from sim.core.reading import printable
 from sim.core.vocabulary import in_words, with_article
 from sim.env.objectnav import ObjectNavEnv
@@ -183,9 +183,7 @@ class Session:
         made, self._made = self._made, None
         if made is None:
             return
-        if isinstance(made.parts.agent, Closable):
-            with contextlib.suppress(Exception):  # code of the user
-                made.parts.agent.close()
+        free_agent(made.parts.agent)
         made.pictures.close()
         made.parts.env.close()
 

@@ -27,7 +27,7 @@ from sim.app.analysis.tables import Cell, ResultTable, to_markdown, to_rich
 from sim.app.commands.traps.family_report import facts_of, family_table, require_matplotlib, write_family_report
 from sim.app.commands.traps.picture import draw_trial
 from sim.app.commands.traps.trial import TrapResult, Trial, run_trial
-from sim.app.composition.agents import build_agent, find_agent
+from sim.app.composition.agents import build_agent, find_agent, free_agent
 from sim.app.composition.record import code_of
 from sim.app.evaluation.config_fields import differing_fields, field_text
 from sim.app.options import RunOptions
@@ -129,7 +129,8 @@ def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str
     spec = find_agent(name)
     truth = ("semantic",) if spec.uses_segmentation else ()
     sensors = tuple(dict.fromkeys((*spec.sensors, *truth)))
-    env = ObjectNavEnv(split=args.split, sensors=sensors, max_steps=args.max_steps)
+    env = ObjectNavEnv(split=args.split, sensors=sensors, look=spec.looks, max_steps=args.max_steps)
+    agent = None
     try:
         agent = make_agent(name, env)
         others = [episode for episode in reversed(episodes) if env.split.sidecar(episode.house).trap is None]
@@ -142,6 +143,7 @@ def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str
                 write_picture(args.out / "pictures", env, agent, trial)
             yield trial
     finally:
+        free_agent(agent)
         env.close()
 
 
