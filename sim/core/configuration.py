@@ -114,11 +114,26 @@ def parse_assignments(assignments: Iterable[str]) -> dict[str, object]:
             raise ConfigError(f"--config takes FIELD=VALUE, for example task.max_steps=300; got '{assignment}'.")
         if path in values:
             raise ConfigError(f"--config sets '{path}' twice.")
-        try:
-            values[path] = json.loads(text)
-        except (ValueError, RecursionError):
-            values[path] = text
+        values[path] = _value_of(text)
     return values
+
+
+def assignments_of(values: Mapping[str, object]) -> list[str]:
+    """Returns the `PATH=VALUE` texts from which `parse_assignments` reads these values."""
+    return [f"{path}={_text_of(value)}" for path, value in values.items()]
+
+
+def _text_of(value: object) -> str:
+    if isinstance(value, str) and _value_of(value) == value:
+        return value  # other texts need quotes, such as the name "7"
+    return json.dumps(value, separators=(",", ":"))
+
+
+def _value_of(text: str) -> object:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        return text
 
 
 def read_settings(file: Path) -> dict[str, object]:

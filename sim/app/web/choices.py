@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 import re
 import threading
 from collections import OrderedDict
@@ -22,7 +21,7 @@ from sim.app.options import RunOptions
 from sim.app.viewers.house_pictures import draw_top_to_scale
 from sim.app.web.controls import Driver, EpisodeRequest
 from sim.core import invocation
-from sim.core.configuration import with_fields
+from sim.core.configuration import assignments_of, with_fields
 from sim.core.errors import ConfigError, HouseError
 from sim.core.goals import NO_GOAL
 from sim.core.interface import GOAL_CATEGORIES
@@ -316,9 +315,9 @@ def _settings(record: RunRecord, own: Iterable[str]) -> tuple[str, ...]:
     """
     settings = record.get("settings")
     settings = settings if isinstance(settings, dict) else {}
-    plain = [f"{path}={json.dumps(value)}" for path, value in settings.items() if _is_plain(value)]
-    files = [path for path, value in settings.items() if not _is_plain(value)]
-    return (*plain, *(assignment for assignment in own if assignment.partition("=")[0] in files))
+    plain = {path: value for path, value in settings.items() if _is_plain(value)}
+    files = settings.keys() - plain.keys()
+    return (*assignments_of(plain), *(assignment for assignment in own if assignment.partition("=")[0] in files))
 
 
 def _is_plain(value: object) -> bool:

@@ -11,7 +11,7 @@ from typing import Literal
 
 import pytest
 
-from sim.core.configuration import as_json, field_paths, parse_assignments, read_settings, with_fields
+from sim.core.configuration import as_json, assignments_of, field_paths, parse_assignments, read_settings, with_fields
 from sim.core.errors import ConfigError
 
 
@@ -98,6 +98,11 @@ def test_assignments_are_read_as_json_where_they_are_json() -> None:
     for wrong, message in ((["a"], "FIELD=VALUE"), (["=3"], "FIELD=VALUE"), (["a=1", "a=2"], "'a' twice")):
         with pytest.raises(ConfigError, match=message):
             parse_assignments(wrong)
+
+
+@pytest.mark.parametrize("value", ["text", "a b=c", "7", "true", '"quoted"', "[1", "", 0.5, None, [1, "a"], {"b": 1}])
+def test_assignments_give_their_values_back(value: object) -> None:
+    assert parse_assignments(assignments_of({"a.b": value})) == {"a.b": value}
 
 
 def test_a_file_of_settings_may_be_toml_or_json(tmp_path: Path) -> None:

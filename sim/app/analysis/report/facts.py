@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from sim.app.analysis.report.media import picture_of, video_of
 from sim.app.evaluation.parallel import Shard
 from sim.app.evaluation.results import RunRecord, can_be_repeated, segmentation_of
 from sim.app.options import RunOptions
+from sim.core.configuration import assignments_of
 from sim.core.errors import ConfigError
 from sim.core.option_types import meanings
 
@@ -81,12 +81,8 @@ def command_of(config: RunRecord) -> str:
         values = [] if value is True else value if isinstance(value, list) else [value]
         words += [f"--{name.replace('_', '-')}", *map(str, values)]
     if settings := options.get("settings"):
-        words += ["--config", *(f"{path}={_setting(value)}" for path, value in settings.items())]
+        words += ["--config", *assignments_of(settings)]
     return shlex.join(words)
-
-
-def _setting(value: object) -> str:
-    return value if isinstance(value, str) else json.dumps(value)
 
 
 def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:

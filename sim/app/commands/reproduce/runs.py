@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import shlex
 import time
 from collections.abc import Mapping, Sequence
@@ -19,7 +18,7 @@ from sim.app.composition.agents import find_agent
 from sim.app.composition.running import run_missing
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
-from sim.core.configuration import parse_assignments
+from sim.core.configuration import assignments_of, parse_assignments
 from sim.core.errors import ConfigError
 from sim.core.files import file_name
 from sim.core.reading import convert
@@ -195,12 +194,8 @@ def _options_text(values: Mapping[str, object], settings: Mapping[str, object]) 
         if value is not None and str(value) != str(getattr(defaults, name)):
             words += [f"--{name}", str(value)]
     if settings:
-        words += ["--config", *(f"{path}={_setting_text(value)}" for path, value in sorted(settings.items()))]
+        words += ["--config", *assignments_of(dict(sorted(settings.items())))]
     return shlex.join(words)
-
-
-def _setting_text(value: object) -> str:
-    return value if isinstance(value, str) else json.dumps(value, separators=(",", ":"))
 
 
 def _words_by_option(name: str) -> dict[str, list[str]]:

@@ -220,3 +220,9 @@ def test_a_long_text_among_the_options_of_an_agent_is_no_file() -> None:
     prompt = "Find the object, then stop. " * 20 + "Do not say where it is.txt"
     options = RunOptions(agent="tests.helpers.agents:SPY", semantics="gt", config=(f"agent.prompt={prompt}",))
     assert record_of(resolve(options), SPLIT)["config"]["agent"]["prompt"] == prompt
+
+
+def test_the_command_that_a_report_prints_quotes_a_name_that_looks_like_a_number() -> None:
+    options = RunOptions(agent="vlm", semantics="gt", config=('agent.model="7"', "agent.url=http://localhost:1"))
+    command = command_of(record_of(resolve(options), SPLIT))
+    assert resolve(cli.parse(RunOptions, shlex.split(command)[2:])).config == resolve(options).config

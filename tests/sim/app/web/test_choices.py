@@ -158,7 +158,7 @@ def test_an_episode_of_a_run_has_its_options_but_no_file_or_code_that_is_not_off
     record: RunRecord = {"agent": "random", "semantics": "noisy", "split": "traps", "seed": 7, "noise": "harsh"}
     request = choices.again({**record, "settings": settings}, line, "person")
     assert (request.options.seed, request.options.noise, request.driver) == (7, "harsh", "person")
-    assert request.options.config == ("task.max_steps=30", 'agent.name="plain"')
+    assert request.options.config == ("task.max_steps=30", "agent.name=plain")
     for part, name in (("agent", OWN_AGENT), ("explorer", "mine:EXPLORER"), ("split", "/my/split")):
         with pytest.raises(ConfigError, match=rf"--{part} '?{name}"):
             choices.again(cast(RunRecord, {**record, part: name}), line, "agent")
