@@ -136,7 +136,7 @@ def main(args: Args) -> int:
         return run_missing_rows(args, console)
 
     def say(text: str) -> None:
-        console.print(text, markup=False, highlight=False, soft_wrap=True)
+        console.print(text, soft_wrap=True)
 
     with tempfile.TemporaryDirectory() as folder:
         runs = read_archive(args.archive, Path(folder))
@@ -181,8 +181,8 @@ def run_missing_rows(args: Args, console: Console) -> int:
     for key, run in runs.items():
         if len(run.results) < len(run.episodes):
             counts = f"{len(run.results)} of {len(run.episodes)} episodes"
-            console.print(f"{key.split}: {key.setup.name}, {key.setup.semantics}: {counts}", highlight=False)
-    console.print(f"{len(folders)} runs in {args.archive}", highlight=False)
+            console.print(f"{key.split}: {key.setup.name}, {key.setup.semantics}: {counts}")
+    console.print(f"{len(folders)} runs in {args.archive}")
     return 0
 
 

@@ -26,10 +26,13 @@ PLAIN_WIDTH = 120
 
 
 class PlainConsole(Console):
-    """A console for which text is text: brackets are not markup, and control characters are written as escapes."""
+    """A console for which text is text: brackets are not markup, and control characters are written as escapes.
+
+    Numbers and paths get no colours.
+    """
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(markup=False, emoji=False, **options)
+        super().__init__(markup=False, emoji=False, highlight=False, **options)
 
     def render_str(self, text: str, **options: Any) -> Text:
         """Returns text for the terminal; every text that is printed and every cell of a table comes here."""
@@ -54,7 +57,7 @@ def print_where_to_look(
         failed: ID of a failed episode of a split, or of a replicate of it; None: none failed.
         sharded: whether the run is a part of a larger one.
     """
-    say = functools.partial(console.print, highlight=False, soft_wrap=True)
+    say = functools.partial(console.print, soft_wrap=True)
     say(f"Results are in {out}: results.jsonl has a line for each episode, summary.json the table above.")
     if video:
         say(f"Videos are in {out}/videos.")
@@ -103,11 +106,10 @@ def print_results(console: Console, results: Sequence[EpisodeResult], summary: M
         console.print("Failed by " + ", ".join(f"{cause}: {count}" for cause, count in causes.most_common()))
     for result in results:
         if result.error:
-            console.print(f"error in {result.episode_id}: {result.error}", markup=False, soft_wrap=True)
+            console.print(f"error in {result.episode_id}: {result.error}", soft_wrap=True)
     if any(result.is_error for result in results) and not debug():
         console.print(
             "--debug shows the traceback of an error; --retry-errors with the same --out runs these episodes again.",
-            highlight=False,
             soft_wrap=True,
         )
 

@@ -141,7 +141,7 @@ class ProgressReport:
         if self._bar is not None:
             self._bar.update(self._task, description=words)
             return
-        self._console.print(words, highlight=False, markup=False, soft_wrap=True)
+        self._console.print(words, soft_wrap=True)
         self._console.file.flush()
 
 

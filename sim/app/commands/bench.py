@@ -93,7 +93,7 @@ def main(args: Args) -> int:
     ]  # fmt: skip
     console = display.make_console()
     console.print(_table(figures))
-    console.print(f"{processor()}, {describe_gl()}, mujoco {mujoco.__version__}", highlight=False, soft_wrap=True)
+    console.print(f"{processor()}, {describe_gl()}, mujoco {mujoco.__version__}", soft_wrap=True)
     if args.out is not None:
         write_atomically(args.out, msgspec.json.format(msgspec.json.encode([asdict(figure) for figure in figures])))
     return 0

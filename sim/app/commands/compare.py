@@ -43,7 +43,7 @@ def main(args: Args) -> int:
     console = display.make_console()
     for table in tables:
         console.print(to_rich(table) if table.rows else "\n".join(table.notes))
-    console.print(verdict(first, second), highlight=False, soft_wrap=True)
+    console.print(verdict(first, second), soft_wrap=True)
     if args.out is not None:
         page = f"{to_markdown([table for table in tables if table.rows])}\n{verdict(first, second)}\n"
         pages = {"comparison.md": page, "comparison.csv": to_csv(tables)}

@@ -12,17 +12,17 @@ categories.
 
 from __future__ import annotations
 
+import functools
 import json
-import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
 from rich.table import Table
 
 from sim.app import cli
+from sim.app.analysis import display
 from sim.app.viewers.house_pictures import distinct_colours, draw_top
 from sim.core.errors import ConfigError, HouseError
 from sim.core.files import write_atomically, write_picture
@@ -36,9 +36,6 @@ from sim.houses.load import load_house, read_rules, validate_house
 from sim.houses.mjcf import read_spec, require_sizes
 from sim.houses.proposals import box_around, propose, rules_of, size_doubt, void_objects
 from sim.houses.references import require_root
-
-TABLE_WIDTH = 120
-"""Width of a line in characters if the output is not a terminal."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,22 +75,23 @@ def main(args: Args) -> int:
     rules = rules_of(propose(model)) if args.labels is None else read_rules(args.labels)
     house = House(house.name, house.spec, rules, house.path)
     labels = read_labels(model, rules=rules, ignore_prefix="")
-    console = Console(markup=False, highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else TABLE_WIDTH)
-    console.print(table_of(model, rows_of(model, labels)))
+    console = display.make_console()
+    say = functools.partial(console.print, soft_wrap=True)
+    say(table_of(model, rows_of(model, labels)))
     for sentence in summary(labels):
-        console.print(sentence)
+        say(sentence)
     if args.out is not None:
         write_atomically(args.out, rules_text(rules))
-        console.print(f"Wrote {len(rules)} rules to {args.out}. Edit the categories, then check them with --labels.")
+        say(f"Wrote {len(rules)} rules to {args.out}. Edit the categories, then check them with --labels.")
     if args.picture is not None:
         plain, coloured = draw_top(house), draw_top(house, colours=distinct_colours(labels.categories()))
         write_picture(args.picture, np.hstack([plain, coloured]))
-        console.print(f"Drew {args.picture}.")
+        say(f"Drew {args.picture}.")
     if args.labels is None:
-        _warn(console, house, model)
+        _warn(say, house, model)
     else:
         load_house(args.house, labels_path=args.labels, root=args.root)
-        console.print(f"'{args.house.stem}' can be used with these labels.")
+        say(f"'{args.house.stem}' can be used with these labels.")
     return 0
 
 
@@ -136,12 +134,12 @@ def rules_text(rules: Mapping[str, str]) -> str:
     return json.dumps(dict(ordered), indent=2, ensure_ascii=False) + "\n"
 
 
-def _warn(console: Console, house: House, model: mujoco.MjModel) -> None:
+def _warn(say: Callable[[str], None], house: House, model: mujoco.MjModel) -> None:
     """Prints a warning if a run would refuse the scene with the proposed rules."""
     try:
         validate_house(house, model)
     except HouseError as error:
-        console.print(f"WARNING: a run would refuse '{house.name}' with these labels: {error}")
+        say(f"WARNING: a run would refuse '{house.name}' with these labels: {error}")
 
 
 def _check(args: Args) -> None:

@@ -50,7 +50,7 @@ def main(args: Args) -> int:
     command = shlex.join(["stubborn", "report", *map(str, args.runs)])
     write_atomically(out, build_page(runs, out_folder=out.parent, command=command))
     message = f"{out} ({display.file_size(out.stat().st_size)})"
-    console.print(message, highlight=False, markup=False, soft_wrap=True)
+    console.print(message, soft_wrap=True)
     return 0
 
 

@@ -43,7 +43,7 @@ def _run(options: RunOptions, console: Console) -> int:
         print("The split test is for a last measurement: do not base choices on its results.", file=sys.stderr)
     episodes, split, notes = episodes_of(setup)
     for note in notes:
-        console.print(f"House '{split['name']}': {note}", highlight=False, markup=False, soft_wrap=True)
+        console.print(f"House '{split['name']}': {note}", soft_wrap=True)
     out = options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
     count = len(episodes)
     if (shard := setup.shard) is not None:

@@ -78,9 +78,9 @@ def run_missing(
             f"segmentation: {segmentation_of(record)}; results in {options.out}"
         )
         for note in notes_on(options.agent, setup.config.agent):
-            console.print(note, highlight=False, soft_wrap=True)
+            console.print(note, soft_wrap=True)
         for note in filter(None, (setup.borrowed_parameters, setup.missing_calibration)):
-            console.print(note, highlight=False, markup=False, soft_wrap=True)
+            console.print(note, soft_wrap=True)
         _report_resumed(run, len(episodes), len(todo), code, console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
@@ -129,14 +129,11 @@ def _report_resumed(run: RunDirectory[EpisodeResult], total: int, todo: int, cod
     for name, (before, now) in (run.other_versions() if 0 < todo < total else {}).items():
         console.print(
             f"The run began with {name} {before}; these episodes run with {now}, and their results may differ.",
-            highlight=False,
-            markup=False,
             soft_wrap=True,
         )
     others = run.record_code(code) if todo else []
     if others and todo < total:
         console.print(
             f"The existing episodes were run by other code ({', '.join(others)}) than these ({code}).",
-            highlight=False,
             soft_wrap=True,
         )

@@ -16,10 +16,9 @@ from typing import Annotated, Generic, TypeVar
 import msgspec
 import numpy as np
 from msgspec import Meta
-from rich.console import Console
 
 from sim.app import cli
-from sim.app.analysis.display import counted
+from sim.app.analysis.display import counted, make_console
 from sim.app.evaluation.own_code import one_line
 from sim.app.evaluation.parallel import ordered_map
 from sim.app.viewers.house_pictures import draw_top, draw_views, titled
@@ -187,7 +186,7 @@ def import_all(
             _write(out, before, reports, rules)
     if not reports and not failed:
         raise ConfigError("There is no house to import.")
-    _print_result(Console(highlight=False, soft_wrap=True), list(reports.values()), failed, out)
+    _print_result(list(reports.values()), failed, out)
     for name in list(reports)[:pictures]:
         _draw(out, name)
     return int(failed > 0)
@@ -276,7 +275,7 @@ def _write(
         write_atomically(out / LABELS_FILE, json.dumps(both, indent=1, ensure_ascii=False) + "\n")
 
 
-def _print_result(console: Console, reports: Sequence[Mapping[str, object]], failed: int, out: Path) -> None:
+def _print_result(reports: Sequence[Mapping[str, object]], failed: int, out: Path) -> None:
     """Prints the sizes of the houses, and how they differ from their sources."""
     total, read = added(reports), [HouseReport.of(report) for report in reports]
     rooms, area_m2 = sum(report.rooms for report in read), sum(report.area_m2 for report in read)
@@ -292,8 +291,9 @@ def _print_result(console: Console, reports: Sequence[Mapping[str, object]], fai
     if total.moved_m > 0.0:
         lines.append(f"Objects were moved by at most {total.moved_m:.2f} m.")
     lines.append(f"{REPORT_FILE} has the counts of each house.")
+    console = make_console()
     for line in lines:
-        console.print(line, markup=False)
+        console.print(line, soft_wrap=True)
 
 
 def _draw(out: Path, name: str) -> None:

@@ -82,7 +82,7 @@ def main(args: Args) -> int:
     results = args.out / "results.jsonl"
     lines = read_lines(results, TrapResult, what="Results")
     if lines.torn:
-        console.print(lines.torn, markup=False)
+        console.print(lines.torn)
         os.truncate(results, lines.whole_bytes)
     ids = {episode.episode_id for episode in episodes}
     rows = [row for row in lines.values if row.episode_id in ids]

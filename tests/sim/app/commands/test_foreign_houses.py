@@ -73,14 +73,16 @@ def test_proposed_labels_can_be_written_edited_and_checked(
     assert read(picture).shape == (220, 2 * 280, 3)
 
 
-def test_names_with_square_brackets_are_printed_as_they_are(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    house = with_box(room(4, 4), "lamp[/left]", centre_m=(1.0, 1.0, 0.5), half_m=(0.2, 0.2, 0.5))
+def test_names_with_brackets_or_colons_are_printed_as_they_are(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    house = with_box(room(4, 4), "lamp[/left]:bed:", centre_m=(1.0, 1.0, 0.5), half_m=(0.2, 0.2, 0.5))
     (tmp_path / "lit.xml").write_text(house.spec.to_xml())
     out = tmp_path / "[old]" / "labels.json"
     words = ["--house", str(tmp_path / "lit.xml"), "--out", str(out)]
     assert cli.run(label_house.Args, label_house.main, words) == 0
     printed = capsys.readouterr().out
-    assert "lamp[/left]" in printed
+    assert "lamp[/left]:bed:" in printed
     assert f"rules to {out}." in printed
 
 
