@@ -72,12 +72,12 @@ def main(args: Args) -> int:
     stored = read_record(out / "config.json")  # the folder may hold an earlier merge of other episodes
     missing = max(stored["episodes"] - len(merged.lines), 0)
     message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
-    console.print(message, highlight=False, soft_wrap=True)
+    console.print(message, soft_wrap=True)
     keys = list(dict.fromkeys(str(run.config["seed_key"]) for run in runs if run.config.get("seed_key")))
     if len(keys) > 1:
         console.print(f"The runs have different seed keys ({', '.join(keys)}); with --seed-key they share one.")
     if lacking := sorted(set(stored.get("only") or ()) - {result.episode_id for result in merged.lines}):
-        console.print(f"Missing: {' '.join(lacking)}", highlight=False, soft_wrap=True)
+        console.print(f"Missing: {' '.join(lacking)}", soft_wrap=True)
     return 1 if missing or summary["errors"] else 0
 
 
@@ -126,14 +126,11 @@ def merged_config(runs: Sequence[Run]) -> dict[str, object]:
 
     If all runs name their episodes (`--only`), the config names all of these.
     """
-    versions = [run.config.get("versions", {}) for run in runs]
-    codes = [
-        code for run, of in zip(runs, versions, strict=True) for code in run.config.get("codes") or [of.get("code")]
-    ]
+    codes = [code for run in runs for code in run.config.get("codes") or [run.config.get("versions", {}).get("code")]]
     named = [set(run.config.get("only") or ()) for run in runs]
     only = sorted(set.union(*named)) if all(named) else []
     episodes = len(only) or max(run.recorded("episodes") for run in runs)
-    changes = {"shard": None, "episodes": episodes, "codes": list(dict.fromkeys(codes))}
+    changes = {"shard": None, "episodes": episodes, "codes": list(dict.fromkeys(filter(None, codes)))}
     return {**runs[0].config, **changes, **({"only": only} if any(named) else {})}
 
 

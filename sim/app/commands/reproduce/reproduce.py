@@ -218,7 +218,7 @@ def write_table(
     page = to_markdown(parts) + "\n" + "\n\n".join(notes) + "\n"
     write_together({folder / f"{stem}.md": page, folder / f"{stem}.csv": to_csv(parts)})
     _print(console, parts, notes)
-    console.print(f"written to {folder / stem}.md and .csv\n", highlight=False)
+    console.print(f"written to {folder / stem}.md and .csv\n")
     return page
 
 
@@ -227,7 +227,7 @@ def _write_all(args: Args, pages: Sequence[str], console: Console) -> None:
     if pages:
         file = args.out / "tables" / f"{stem_of(args, args.table)}.md"
         write_atomically(file, "\n".join(pages))
-        console.print(f"{len(pages)} tables on {file}", highlight=False)
+        console.print(f"{len(pages)} tables on {file}")
 
 
 def _write_pages(args: Args, of_splits: Sequence[Args], pages: Mapping[str, Sequence[str]], console: Console) -> None:
@@ -236,7 +236,7 @@ def _write_pages(args: Args, of_splits: Sequence[Args], pages: Mapping[str, Sequ
         stem = "_".join((stem_of(replace(args, split=Args.split), name), "+".join(map(_split_name, of_splits))))
         if parts:
             write_atomically(args.out / "tables" / f"{stem}.md", "\n".join(parts))
-            console.print(f"{len(parts)} splits on {args.out / 'tables' / stem}.md", highlight=False)
+            console.print(f"{len(parts)} splits on {args.out / 'tables' / stem}.md")
 
 
 def stem_of(args: Args, name: str) -> str:
@@ -258,14 +258,15 @@ def with_cause(of: Run, result: EpisodeResult) -> EpisodeResult:
 def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequence[str]) -> list[str]:
     """Returns the notes of a table: episodes, split, how intervals are made, the command, errors and code."""
     some = next(iter(runs.values()))
-    config, split, versions = some.config, some.recorded("split_identity"), some.config["versions"]
+    config, split, versions = some.config, some.recorded("split_identity"), some.config.get("versions", {})
     houses = len({some.results[i].house for i in common})
     errors = sum(of.results[i].is_error for of in runs.values() for i in common)
     codes = Counter(code_of(of, i) for of in runs.values() for i in common)
     notes = [
         f"{display.counted(len(common), 'episode')} in {display.counted(houses, 'house')} of "
         f"{split['name']} {split['version']} ({split['sha256'][:8]}), "
-        f"sensor noise {config['noise']}, seed {config['seed']}, mujoco {versions['mujoco']}.",
+        f"sensor noise {config.get('noise', RunOptions.noise)}, seed {config.get('seed', RunOptions.seed)}, "
+        f"mujoco {versions.get('mujoco', 'unknown')}.",
         "Mean [95 % interval over houses]. Differences are paired by episode; not significant: the p-value is at least "
         f"{SIGNIFICANCE} after Holm's correction for the differences of the same table, or there are fewer than "
         f"{MIN_PAIRS} pairs. Intervals are not corrected.",
@@ -295,7 +296,7 @@ def _print(console: Console, parts: Sequence[ResultTable], notes: Sequence[str])
     for part in parts:
         console.print(to_rich(part))
     for note in notes:
-        console.print(note, markup=False, highlight=False, soft_wrap=True)
+        console.print(note, soft_wrap=True)
 
 
 def _run_args(args: Args, setup: AgentSetup) -> RunOptions:

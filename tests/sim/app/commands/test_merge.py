@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from sim.app.analysis.comparison import read_run
 from sim.app.commands import run
 from sim.app.commands.merge import Args, main
 from sim.app.composition.setup import resolve
@@ -125,6 +126,11 @@ def test_all_code_that_ran_episodes_is_named(tmp_path: Path) -> None:
     later = write(tmp_path / "c", [line_of(2)], versions={"code": "newer"})
     main(Args(runs=(later,), out=tmp_path / "both"))
     assert json.loads((tmp_path / "both" / "config.json").read_text())["codes"] == ["c0de", "0lder", "newer"]
+
+
+def test_a_merge_of_runs_that_do_not_name_their_code_is_a_run(tmp_path: Path) -> None:
+    main(Args(runs=(write(tmp_path / "a", [line_of(0)], versions={}),), out=tmp_path / "b"))
+    assert read_run(tmp_path / "b").config["codes"] == []
 
 
 def test_nothing_to_merge_is_one_sentence(tmp_path: Path) -> None:

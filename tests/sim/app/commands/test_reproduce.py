@@ -7,6 +7,7 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -234,6 +235,13 @@ def test_the_notes_agree_with_the_runs(ran: reproduce.Args) -> None:
     setup, other = AgentSetup.named("oracle", "gt"), replace(ran, seed=7, noise="harsh")
     note = reproduce.notes_of(other, "overall", {setup: read_run(ran.out / ORACLE)}, ["e0"])[0]
     assert "sensor noise none, seed 0," in note
+
+
+def test_the_notes_of_a_run_of_older_code_have_its_defaults(ran: reproduce.Args) -> None:
+    run = read_run(ran.out / ORACLE)
+    older: Any = {name: value for name, value in run.config.items() if name not in ("noise", "seed", "versions")}
+    note = reproduce.notes_of(ran, "overall", {AgentSetup.named("oracle", "gt"): replace(run, config=older)}, ["e0"])[0]
+    assert note.endswith("sensor noise none, seed 0, mujoco unknown.")
 
 
 def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: Path, tmp_path: Path) -> None:
