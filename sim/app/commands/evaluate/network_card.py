@@ -202,7 +202,7 @@ def training_commands(stages: Sequence[Training]) -> Iterator[str]:
 def _command(stage: Training) -> str:
     """Returns the command of one training."""
     options = (
-        f"--{key.replace('_', '-')} {' '.join(value) if isinstance(value, list) else value}"
+        f"--{key.replace('_', '-')} {' '.join(map(str, value)) if isinstance(value, list) else value}"
         for key, value in stage.options.items()
         if value
     )

@@ -299,9 +299,10 @@ def test_too_few_views_are_refused_before_anything_is_written(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("options", "told"), [({"rate": "0.001"}, False), ({"rate": "0.001", "window_px": "160"}, True)]
+    ("options", "told"),
+    [({"rate": 0.001}, False), ({"rate": 0.001, "window_px": 160}, True), ({"rate": 0.001, "rows": [1, 2]}, True)],
 )
-def test_a_card_says_which_options_of_a_training_are_of_earlier_versions(options: dict[str, str], told: bool) -> None:
+def test_a_card_says_which_options_are_of_earlier_versions(options: dict[str, object], told: bool) -> None:
     text = "\n".join(training_commands([Training(options={"seed": "1"}), Training(options={**options})]))
     assert "--seed 1\nstubborn train segmentation --rate 0.001" in text
     assert ("earlier versions" in text) == told
