@@ -17,7 +17,7 @@ from msgspec import Meta
 
 from sim.app import cli
 from sim.app.analysis import display
-from sim.app.services.hosting import listen, require_web, show_errors_in_one_line
+from sim.app.services.hosting import in_address, listen, require_web, show_errors_in_one_line
 from sim.core.configuration import with_absolute_paths
 from sim.core.errors import ConfigError
 
@@ -27,8 +27,9 @@ if TYPE_CHECKING:
 FIRST_AGENT = "stubborn-plus"
 """The agent that the page proposes first."""
 HERE = frozenset(("127.0.0.1", "localhost", "::1"))
-ALL_INTERFACES = frozenset(("0.0.0.0", "::"))
 """Names by which this machine addresses itself."""
+ALL_INTERFACES = frozenset(("0.0.0.0", "::"))
+"""Values of --host that listen on every address of this machine."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,10 +95,8 @@ def main(args: Args) -> int:
     )
     show_errors_in_one_line()
     names = sorted(hosts - HERE) or ["127.0.0.1" if args.host in ALL_INTERFACES else args.host]
-    addresses = ", ".join(f"http://{f'[{name}]' if ':' in name else name}:{port}" for name in names)
-    display.make_console().print(
-        f"Open {addresses} in a browser. Ctrl-C ends the server.", highlight=False, soft_wrap=True
-    )
+    addresses = ", ".join(f"http://{in_address(name)}:{port}" for name in names)
+    display.make_console().print(f"Open {addresses} in a browser. Ctrl-C ends the server.", soft_wrap=True)
     sys.stdout.flush()
     with contextlib.suppress(KeyboardInterrupt):
         uvicorn.Server(config).run(sockets=[listening])

@@ -18,6 +18,11 @@ def require_web() -> None:
         raise ConfigError(f"{invocation.program()} needs {', '.join(missing)}: pip install 'stubborn-objectnav[web]'.")
 
 
+def in_address(host: str) -> str:
+    """Returns a host as it is written in an address: one of IPv6 has brackets."""
+    return f"[{host}]" if ":" in host else host
+
+
 def listen(host: str, port: int) -> socket.socket:
     """Returns a listening socket.
 

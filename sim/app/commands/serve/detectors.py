@@ -17,7 +17,7 @@ from msgspec import Meta
 
 from sim.app.analysis import display
 from sim.app.services.detectors import Source, make_detector
-from sim.app.services.hosting import listen, require_web, show_errors_in_one_line
+from sim.app.services.hosting import in_address, listen, require_web, show_errors_in_one_line
 
 PORTS = 4
 
@@ -45,9 +45,8 @@ def main(args: Args) -> int:
     config = uvicorn.Config(make_app(make_detector(args.source)), log_level="warning", access_log=False)
     show_errors_in_one_line()
     display.make_console().print(
-        f"Detectors ({args.source}) on http://{args.host}, ports {args.port} to {args.port + PORTS - 1}. "
+        f"Detectors ({args.source}) on http://{in_address(args.host)}, ports {args.port} to {args.port + PORTS - 1}. "
         "Ctrl-C ends the server.",
-        highlight=False,
         soft_wrap=True,
     )
     sys.stdout.flush()

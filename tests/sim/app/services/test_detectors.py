@@ -28,6 +28,7 @@ from sim.app.services.detectors import (
 )
 from sim.app.services.forms import read_posteriors, view_bytes
 from sim.app.services.frames import Frame, Shelf, UnknownPictureError, register
+from sim.app.services.hosting import in_address
 from sim.app.services.server import Answers, make_app
 from sim.app.services.words import categories_in, category_of
 from sim.core.errors import ConfigError
@@ -259,3 +260,7 @@ def test_a_server_that_does_not_take_frames_is_named(start: Start, answer: Handl
         register(url, frame())
     with pytest.raises(ConfigError, match="must be http"):
         register(url.removeprefix("http://"), frame())
+
+
+def test_an_address_has_brackets_around_a_host_of_ipv6() -> None:
+    assert [in_address(host) for host in ("localhost", "::1")] == ["localhost", "[::1]"]
