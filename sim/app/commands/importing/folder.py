@@ -138,36 +138,33 @@ class _Failed:
 
 
 def import_all(
+    args: ImportArgs,
     works: Iterable[Work[SourceT]],
     make: Callable[[SourceT], Made],
-    out: Path,
     *,
     total: int | None,
     options: str,
-    pictures: int,
-    workers: int,
 ) -> int:
     """Imports houses and prints the outcome; returns 1 if a house could not be imported.
 
     Args:
+        args: the folder, and how many houses are drawn, by how many processes.
         works: the houses.
         make: writes a house into the folder; picklable.
-        out: the folder.
         total: largest number of houses, for the time left; None: the time left follows from `Work.share`.
         options: text of all options on which the houses depend.
-        pictures: number of houses that are drawn.
-        workers: number of processes.
 
     Raises:
         ConfigError: the folder has a report that another program wrote, or there is no house.
     """
+    out = args.out
     before = read_reports(out)
     reports: dict[str, dict[str, object]] = {}
     rules: dict[str, str] = {}
     failed = 0
     began_s = said_s = time.monotonic()
     try:
-        for work, key, made in _run(works, make, out, before, options, workers):
+        for work, key, made in _run(works, make, out, before, options, args.workers):
             if isinstance(made, _Failed):
                 failed += 1
                 print(f"{work.name}: left out: {printable(made.message)}", file=sys.stderr)
@@ -187,7 +184,7 @@ def import_all(
     if not reports and not failed:
         raise ConfigError("There is no house to import.")
     _print_result(list(reports.values()), failed, out)
-    for name in list(reports)[:pictures]:
+    for name in list(reports)[: args.pictures]:
         _draw(out, name)
     return int(failed > 0)
 

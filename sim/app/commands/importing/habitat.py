@@ -55,10 +55,8 @@ def main(args: Args) -> int:
     check_installed()
     sources = find_sources(args.path)[: args.houses]
     scenes = None if args.episodes is None else read_scenes(args.episodes)
-    status = import_all(
-        _works(sources), functools.partial(_make, args.out, args.config), args.out, total=len(sources),
-        options=f"habitat {args.config}", pictures=args.pictures, workers=args.workers,
-    )  # fmt: skip
+    make, options = functools.partial(_make, args.out, args.config), f"habitat {args.config}"
+    status = import_all(args, _works(sources), make, total=len(sources), options=options)
     if scenes is not None:
         _write_episodes(args.out, [source.name for source in sources], scenes)
     return status

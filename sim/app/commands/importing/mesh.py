@@ -49,10 +49,8 @@ def main(args: Args) -> int:
     rules = {} if args.categories is None else read_rules(args.categories)
     files = find_files(args.path)[: args.houses]
     works = file_works(files, files_of)
-    return import_all(
-        works, functools.partial(_make, args, rules), args.out, total=len(files),
-        options=f"mesh {args.config} {args.up} {json.dumps(rules)}", pictures=args.pictures, workers=args.workers,
-    )  # fmt: skip
+    options = f"mesh {args.config} {args.up} {json.dumps(rules)}"
+    return import_all(args, works, functools.partial(_make, args, rules), total=len(files), options=options)
 
 
 def _make(args: Args, rules: dict[str, str], file: Path) -> Made:

@@ -40,10 +40,8 @@ def main(args: Args) -> int:
     files = find_houses(args.path)[: args.houses]
     works = file_works(files, lambda file: [metadata_file(file), *files_of(file, args.root)])
     works = (replace(work, name=name_of(work.source)) for work in works)
-    return import_all(
-        works, functools.partial(_make, args), args.out, total=len(files),
-        options=f"molmospaces {args.doors} {args.texture_px} {args.pack}", pictures=args.pictures, workers=args.workers,
-    )  # fmt: skip
+    options = f"molmospaces {args.doors} {args.texture_px} {args.pack}"
+    return import_all(args, works, functools.partial(_make, args), total=len(files), options=options)
 
 
 def _make(args: Args, file: Path) -> Made:

@@ -54,11 +54,8 @@ def main(args: Args) -> int:
     database = find_assets(args.path, args.assets)
     config = ProcthorConfig(doors=args.doors, pool=args.pool, seed=args.seed)
     options = f"procthor {config} {sha256_of(database, what='Asset database')}"
-    return import_all(
-        itertools.islice(_works(args.path), args.houses),
-        functools.partial(_make, args.out, database, config),
-        args.out, total=args.houses, options=options, pictures=args.pictures, workers=args.workers,
-    )  # fmt: skip
+    works, make = itertools.islice(_works(args.path), args.houses), functools.partial(_make, args.out, database, config)
+    return import_all(args, works, make, total=args.houses, options=options)
 
 
 def _works(path: Path) -> Iterator[Work[Source]]:

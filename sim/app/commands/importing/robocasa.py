@@ -36,10 +36,8 @@ def main(args: Args) -> int:
     require_root(args.root)
     files = find_scenes(args.path)[: args.houses]
     works = file_works(files, lambda file: files_of(file, args.root))
-    return import_all(
-        works, functools.partial(_make, args), args.out, total=len(files),
-        options=f"robocasa {args.texture_px} {args.pack}", pictures=args.pictures, workers=args.workers,
-    )  # fmt: skip
+    options = f"robocasa {args.texture_px} {args.pack}"
+    return import_all(args, works, functools.partial(_make, args), total=len(files), options=options)
 
 
 def _make(args: Args, file: Path) -> Made:

@@ -18,7 +18,7 @@ from sim.app import cli
 from sim.app.commands import episodes
 from sim.app.commands.importing import folder
 from sim.app.commands.importing import mesh as command
-from sim.app.commands.importing.folder import Made, Work, file_works, import_all
+from sim.app.commands.importing.folder import ImportArgs, Made, Work, file_works, import_all
 from sim.core.errors import ConfigError, EpisodeError, HouseError
 from sim.gl import mujoco
 from sim.homes.importers import mesh_house
@@ -317,7 +317,7 @@ def test_an_error_that_nobody_expected_is_named_and_the_other_homes_are_imported
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     works = [Work(name, b"", Path(name)) for name in ("a", "b", "c")]
-    assert import_all(works, _made, tmp_path, total=3, options="", pictures=0, workers=1) == 1
+    assert import_all(ImportArgs(out=tmp_path, pictures=0), works, _made, total=3, options="") == 1
     printed = capsys.readouterr()
     assert "b: left out: it cannot be imported (RecursionError: maximum recursion depth exceeded in a" in printed.err
     assert "2 houses with 2 rooms" in printed.out
@@ -335,8 +335,8 @@ def test_an_import_that_was_stopped_goes_on_with_the_houses_that_are_left(tmp_pa
 
     works = [Work(name, b"", Path(name)) for name in ("a", "c")]
     with pytest.raises(KeyboardInterrupt):
-        import_all(works, stopped, tmp_path, total=2, options="", pictures=0, workers=1)
-    assert import_all(works, stopped, tmp_path, total=2, options="", pictures=0, workers=1) == 0
+        import_all(ImportArgs(out=tmp_path, pictures=0), works, stopped, total=2, options="")
+    assert import_all(ImportArgs(out=tmp_path, pictures=0), works, stopped, total=2, options="") == 0
     assert tried == ["a", "c", "c"]
 
 
@@ -345,7 +345,7 @@ def test_the_time_left_is_said_while_homes_are_left(
 ) -> None:
     monkeypatch.setattr(folder, "PROGRESS_S", -1.0)
     works = [Work(name, b"", Path(name)) for name in ("a", "c")]
-    import_all(works, _made, tmp_path, total=2, options="", pictures=0, workers=1)
+    import_all(ImportArgs(out=tmp_path, pictures=0), works, _made, total=2, options="")
     assert [line for line in capsys.readouterr().out.splitlines() if "left." in line] == [
         "1 house, about 0 min 0 s left."
     ]
