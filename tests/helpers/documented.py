@@ -1,7 +1,7 @@
 """Code blocks of README and docs: what readers will copy, and how a test tries it without their hours.
 
-Every command that stands in a `sh` block is tried as `TRIALS` says, or else as it stands with less to do (`reduced`).
-Those that cannot be tried have a reason in `UNTRIED`, or in `TRIALS`.
+Every command that stands in a `sh` block is tried as `TRIALS` says, or else as it stands, with other files (`INPUTS`)
+and less to do (`reduced`). Those that cannot be tried have a reason in `UNTRIED`, or in `TRIALS`.
 """
 
 from __future__ import annotations
@@ -133,15 +133,15 @@ LAB_PYTHON = ".venv-habitat/bin/python"
 """The Python that `stubborn habitat setup` makes."""
 FOREIGN = (LAB_PYTHON, ".venv-ros2/bin/python", "ros2")
 """Programs of other environments."""
-_RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
 _HOUSES = "stubborn houses generate --houses 1 --kind flat --area-m2 90 --rooms gym --hazards glass --out {tmp}/houses"
-_SHOWN = f"{_RUN} --agent oracle --split val --episodes 2 --record --out {{tmp}}/shown/oracle"
 _SEARCHES = (
     f"{PYTHON} -m tools.training.plan_demonstrations --first-seed 19 --houses 2 --kind studio --episodes 4 "
     "--out {tmp}/demonstrations/searches"
 )
-_TRAIN_CLONED = "stubborn train cloned --demonstrations {tmp}/demonstrations --minutes 0.1 --threads 2"
-_CLONED = f"{_TRAIN_CLONED} --streams 2 --out {{tmp}}/cloned"
+_CLONED = (
+    "stubborn train cloned --demonstrations {tmp}/demonstrations --minutes 0.1 --threads 2 --streams 2"
+    " --out {tmp}/cloned"
+)
 _PLANS = ("stubborn houses plans --pool train --kind studio --houses 4 --out {tmp}/plans",)
 _MY_TRAPS = (
     f"{PYTHON} -c 'from tests.helpers.foreign import *; write_trap(Path(\"{{tmp}}/traps\"))'",
@@ -149,17 +149,11 @@ _MY_TRAPS = (
 )
 _EPISODES = "stubborn episodes --split {tmp}/houses --episodes 3"
 _VIEWS = (
-    "stubborn views --split val --views 4 --shrink 4 --profile fast --out {tmp}/views --workers 1 --views-per-shard 4"
+    "stubborn views --split val --views 4 --views-per-shard 2 --shrink 4 --profile fast --extras instances"
+    " --out {tmp}/views"
 )
 _FOREIGN = f"{PYTHON} -c 'from pathlib import Path; from tests.helpers.foreign import *; "
 _SCENE = _FOREIGN + 'write_scene(Path("{tmp}/s"))\''
-_ROBOT = _FOREIGN + 'write_robot(Path("{tmp}/r"))\''
-_IN_SCENE = (
-    f"{_RUN} --house {{tmp}}/s/flat.xml --labels {{tmp}}/s/labels.json --episodes 1 --agent oracle --record"
-    " --out {tmp}/run"
-)
-_OF_SCENE = "--house {tmp}/s/flat.xml --labels {tmp}/s/labels.json"
-_PACKED = f"stubborn episodes {_OF_SCENE} --episodes 2 --out {{tmp}}/split"
 _KITCHEN = "runs/worlds/gymnasium_robotics/envs/assets/kitchen_franka"
 _PACKAGE = Only("needs files of another package; tests/sim/app/commands/test_foreign_houses.py has a scene of its own")
 _MODELS = (
@@ -179,28 +173,71 @@ _UNSEEN = (
 )
 _SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in (1, 2))
 
-_PUBLISHED = "needs a repository of others, which is not part of this project"
 _ENTRY = (
     f"{_RUN} --agent 'process:{sys.executable} tests/helpers/client_agent.py' --split val --episodes 1 --record"
     " --out {tmp}/entry"
 )
 _SUBMIT = "stubborn submit {tmp}/entry --name 'My agent' --authors 'A. Author' --out {tmp}/my_agent.json.gz"
 _SEAL = "stubborn seal make --out {tmp}/sealed2027 --secret-file {tmp}/secret --houses 1 --episodes 2"
-_COMPARED = (
-    f"{_RUN} --agent oracle {_SMALL} --episodes 1 --out {{tmp}}/before",
-    f"{_RUN} --agent random {_SMALL} --episodes 1 --out {{tmp}}/after",
-    "stubborn compare {tmp}/before {tmp}/after",
+_PPO = f"{PYTHON} -m examples.train_ppo --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo"
+_BEFORE = ("{tmp}/before", (f"{_RUN} --agent oracle --goal bed --episodes 1 --out {{tmp}}/before",))
+_AFTER = ("{tmp}/mine", (f"{_RUN} --agent random --goal bed --episodes 1 --record --out {{tmp}}/mine",))
+_NETWORK = (
+    "{tmp}/my_network.pt",
+    (
+        f"{PYTHON} -c 'import torch; from examples.my_segmentation import MyNetwork; "
+        'torch.save(MyNetwork().state_dict(), "{tmp}/my_network.pt")\'',
+    ),
 )
-_REPORTED = (
-    f"{_RUN} --agent oracle --goal bed --episodes 1 --out {{tmp}}/before",
-    _RECORDED,
-    "stubborn report {tmp}/before {tmp}/mine",
-)
-_FLAT = "stubborn episodes --house examples/my_flat.xml --episodes 2 --out {tmp}/flat_split"
-_MY_NETWORK = (
-    _VIEWS.replace(" --shrink 4", ""),
-    f"{PYTHON} -m examples.train_my_network --views {{tmp}}/views --minutes 0.01 --out {{tmp}}/my_network.pt",
-)
+_MADE_VIEWS = ("{tmp}/views", (_VIEWS,))
+_CLIENT = (f"process:{sys.executable} tests/helpers/client_agent.py", ())
+INPUTS: dict[str, tuple[str, tuple[str, ...]]] = {
+    **dict.fromkeys(("runs/before", "runs/default", "runs/first_seeing", "runs/pt_truth", "runs/random20"), _BEFORE),
+    **dict.fromkeys(("runs/after", "runs/paper_way", "runs/pt_network", "runs/cloned20"), _AFTER),
+    **dict.fromkeys(("runs/mine", "runs/me", "runs/first_map", "runs/harsh"), _AFTER),
+    **dict.fromkeys(("runs/views_train", "runs/views_test", "runs/views_val", "runs/views_val_1"), _MADE_VIEWS),
+    **dict.fromkeys(("views_val", "views_objects"), _MADE_VIEWS),
+    **dict.fromkeys(("runs/plans/train", "runs/plans/unseen"), ("{tmp}/plans", _PLANS)),
+    **dict.fromkeys(("runs/entry", "runs/walker"), ("{tmp}/entry", (_ENTRY,))),
+    **dict.fromkeys(("my_agent.json.gz", "walker.json.gz"), ("{tmp}/my_agent.json.gz", (_ENTRY, _SUBMIT))),
+    **dict.fromkeys(("my_network.pt", "runs/my_network.pt"), _NETWORK),
+    **dict.fromkeys(("runs/rednet/rednet.safetensors", "runs/finer/rednet.safetensors"), (_SHIPPED, ())),
+    **dict.fromkeys(("process:python my_agent.py", "process:old/bin/python my_agent.py"), _CLIENT),
+    "my_agent:make": ("examples.my_agent:make", ()),
+    "runs/verifier.json": ("stubborn/detection/verifiers/rednet.json", ()),
+    "runs/fusion.json": ("stubborn/detection/fusions/rednet.json", ()),
+    "runs/context.json": ("stubborn/detection/context.json", ()),
+    "runs/semexp/semexp.safetensors": ("stubborn/exploration/weights/semexp.safetensors", ()),
+    "runs/cloned/cloned.safetensors": ("{tmp}/cloned/cloned.safetensors", (_SEARCHES, _CLONED)),
+    "runs/shown/oracle": (
+        "{tmp}/shown/oracle",
+        (f"{_RUN} --agent oracle --split val --episodes 2 --record --out {{tmp}}/shown/oracle",),
+    ),
+    "runs/ppo/run.toml": ("{tmp}/ppo/run.toml", (_PPO,)),
+    "my_settings.toml": (
+        "{tmp}/my.toml",
+        (f'{PYTHON} -c \'from pathlib import Path; Path("{{tmp}}/my.toml").write_text("[task]\\nmax_steps = 3\\n")\'',),
+    ),
+    "runs/big": ("{tmp}/big", _SHARDS),
+    "runs/flat_split": (
+        "{tmp}/flat_split",
+        ("stubborn episodes --house examples/my_flat.xml --episodes 2 --out {tmp}/flat_split",),
+    ),
+    "runs/houses": ("{tmp}/houses", (_HOUSES, _EPISODES)),
+    "runs/rooms": ("val", ()),
+    "runs/models": ("{tmp}/models", _MODELS),
+    "runs/transfer": ("{tmp}/transfer", _TRANSFER),
+    "runs/my_house.xml": ("{tmp}/my_house.xml", (f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",)),
+    "flat.xml": ("{tmp}/s/flat.xml", (_SCENE,)),
+    "labels.json": ("{tmp}/s/labels.json", (_SCENE,)),
+    "carrier.xml": ("{tmp}/r/carrier.xml", (_FOREIGN + 'write_robot(Path("{tmp}/r"))\'',)),
+    "train.jsonl.gz": (
+        "{tmp}/source/houses.jsonl.gz",
+        (_FOREIGN.replace("foreign", "procthor") + 'write_small_house(Path("{tmp}/source"))\'',),
+    ),
+    "scenes": ("{tmp}/scenes", (_FOREIGN.replace("foreign", "molmospaces") + 'write_scene(Path("{tmp}/scenes"))\'',)),
+}
+"""What documented commands read and is not there: what a trial reads in its place, and the commands that write that."""
 _LAB = "needs habitat-lab; `make test-habitat` runs it"
 _ROS = "needs ROS 2; `make test-ros` runs such a command"
 UNTRIED = {
@@ -227,35 +264,13 @@ UNTRIED = {
 }
 """How parts of documented commands begin that are parsed but not run, and why."""
 TRIALS: dict[str, tuple[str, ...] | Only] = {
-    # README
-    "stubborn report runs/mine": (_RECORDED, "stubborn report {tmp}/mine"),
-    # docs/index.md
     f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
-    # docs/agents.md
-    f"{_RUN} --agent 'process:old/bin/python my_agent.py'": (
-        f"{_RUN} --agent 'process:{sys.executable} tests/helpers/client_agent.py' {_SMALL} --episodes 1 "
-        "--config task.max_steps=5 --out {tmp}/run",
-    ),
-    "stubborn compare runs/before runs/after": _COMPARED,
-    # docs/gymnasium.md
-    f"{PYTHON} -m examples.train_ppo --minutes 30 --envs 2 --out runs/ppo": (
-        f"{PYTHON} -m examples.train_ppo --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
-    ),
-    f"{_RUN} --agent examples.ppo_agent:AGENT --config-file runs/ppo/run.toml {_SMALL} --video": (
-        f"{PYTHON} -m examples.train_ppo --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
-        f"{_RUN} --agent examples.ppo_agent:AGENT --config-file {{tmp}}/ppo/run.toml {_SMALL} --episodes 1 --video"
-        " --out {tmp}/filmed",
-    ),
+    f"{PYTHON} -m examples.train_ppo --minutes 30 --envs 2 --out runs/ppo": (_PPO,),
     "stubborn houses plans --split val --out runs/plans/val --workers 2": (
         "stubborn houses plans --split val --houses 1 --workers 1 --out {tmp}/plans",
     ),
     "stubborn houses plans --pool train --first-seed 0 --houses 240 --out runs/plans/train --workers 2": (
         "stubborn houses plans --pool train --first-seed 0 --kind studio --houses 1 --workers 1 --out {tmp}/plans",
-    ),
-    f"{_RUN} --agent oracle --split train --episodes 2000 --record --out runs/shown/oracle": (_SHOWN,),
-    f"{PYTHON} -m tools.training.render_demonstrations runs/shown/oracle --out runs/demonstrations": (
-        _SHOWN,
-        f"{PYTHON} -m tools.training.render_demonstrations {{tmp}}/shown/oracle --out {{tmp}}/demonstrations",
     ),
     f"{PYTHON} -m tools.training.plan_demonstrations --houses 112 --episodes 40 --out runs/demonstrations/searches": (
         _SEARCHES,
@@ -264,217 +279,71 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _SEARCHES,
         _CLONED,
     ),
-    f"{_RUN} --agent cloned --semantics gt --config agent.weights=runs/cloned/cloned.safetensors": (
-        _SEARCHES,
-        _CLONED,
-        f"{_RUN} --agent cloned --semantics gt --config agent.weights={{tmp}}/cloned/cloned.safetensors {_SMALL} "
-        "--episodes 1 --out {tmp}/run",
-    ),
-    # docs/models.md
-    # docs/lerobot.md
-    # docs/tables/splits.md
     f"{PYTHON} -m tools.maintenance.split_report --workers 2 --published --out splits.md": (
         f"{PYTHON} -m tools.maintenance.split_report --splits hazards --episodes 2 --workers 1 --published --out "
         "{tmp}/splits.md",
     ),
-    # docs/words.md
     f"{PYTHON} -m tools.research.check_descriptions --split val --per-house 180 --workers 2"
     " --out runs/descriptions.json": (
         f"{PYTHON} -m tools.research.check_descriptions --split val --per-house 2 --houses 1 --workers 1"
         " --out {tmp}/descriptions.json",
     ),
-    # docs/stubborn_plus.md
-    # docs/tutorials
     f"{_RUN} --agent random_agent:make --episodes 2 --video --out runs/random": Only(
         "tests/test_docs.py runs the agent"
     ),
-    "stubborn compare runs/first_seeing runs/first_map": _COMPARED,
-    "stubborn compare runs/random20 runs/cloned20": _COMPARED,
-    "stubborn report runs/first_map": (_RECORDED, "stubborn report {tmp}/mine"),
-    "stubborn report runs/pt_truth runs/pt_network": _REPORTED,
-    f"{_RUN} --split runs/flat_split --agent stubborn-plus --semantics gt --episodes 20 --workers 2": (
-        _FLAT,
-        f"{_RUN} --split {{tmp}}/flat_split --agent oracle --semantics gt --episodes 1 --workers 1 --out {{tmp}}/run",
-    ),
-    "stubborn views show --views runs/views_train --out runs/views.png": (
-        _VIEWS,
-        "stubborn views show --views {tmp}/views --out {tmp}/views.png",
-    ),
     f"{PYTHON} -m examples.train_my_network --views runs/views_train --minutes 10 --out runs/my_network.pt": (
-        *_MY_NETWORK,
-    ),
-    "stubborn evaluate --views runs/views_test --semantics examples.my_segmentation:SEGMENTATION"
-    " --config detector.weights=runs/my_network.pt": (
-        *_MY_NETWORK,
-        "stubborn evaluate --views {tmp}/views --semantics examples.my_segmentation:SEGMENTATION"
-        " --config detector.weights={tmp}/my_network.pt",
-    ),
-    f"stubborn evaluate --views runs/views_test --weights {_SHIPPED}": (
-        _VIEWS.replace("shard 4", "shard 2"),
-        f"stubborn evaluate --views {{tmp}}/views --weights {_SHIPPED}",
-    ),
-    f"{_RUN} --agent stubborn-plus --semantics examples.my_segmentation:SEGMENTATION"
-    " --config detector.weights=runs/my_network.pt --goal bed --episodes 5 --video": (
-        *_MY_NETWORK,
-        f"{_RUN} --agent stubborn-plus --semantics examples.my_segmentation:SEGMENTATION"
-        f" --config detector.weights={{tmp}}/my_network.pt task.max_steps=5 {_SMALL} --episodes 1 --video"
-        " --out {tmp}/run",
+        _VIEWS.replace(" --shrink 4", ""),
+        f"{PYTHON} -m examples.train_my_network --views {{tmp}}/views --minutes 0.01 --out {{tmp}}/my_network.pt",
     ),
     "stubborn train segmentation --init shipped --init-share 0.5 --views runs/views_finer --val-views views_val "
     "--rate 0.0003 --hours 1 --out runs/finer": Only("docs/segmentation.md has the same command, which is tried"),
-    f"{_RUN} --agent 'process:python my_agent.py' --split val --episodes 5 --record --out runs/walker": (_ENTRY,),
-    "stubborn submit runs/walker --name Walker --authors 'A. Student' --out walker.json.gz": (
-        _ENTRY,
-        "stubborn submit {tmp}/entry --name Walker --authors 'A. Student' --out {tmp}/walker.json.gz",
-    ),
-    "stubborn verify walker.json.gz": (_ENTRY, _SUBMIT, "stubborn verify {tmp}/my_agent.json.gz"),
-    # docs/houses.md
     "stubborn episodes --split runs/houses --episodes 20": (_HOUSES, _EPISODES),
-    f"{_RUN} --split runs/houses --episodes 4": (
-        _HOUSES,
-        _EPISODES,
-        f"{_RUN} --split {{tmp}}/houses --episodes 1 --agent oracle --out {{tmp}}/run",
-    ),
-    # docs/furniture.md
     f"{PYTHON} examples/my_furniture.py runs/my_house.xml": (
         f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
     ),
-    "stubborn gallery --houses runs/my_house.xml --out runs/my_gallery": (
-        f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
-        "stubborn gallery --houses {tmp}/my_house.xml --out {tmp}/gallery",
-    ),
-    "stubborn houses generate --furniture runs/models --houses 4 --out runs/furnished": (
-        *_MODELS,
-        "stubborn houses generate --furniture {tmp}/models --houses 1 --out {tmp}/furnished",
-    ),
     "stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer": _TRANSFER[:-1],
     "stubborn episodes --split runs/transfer --recipe val": _TRANSFER,
-    "stubborn views --split runs/transfer --views 200 --seed 12 --shrink 2 --profile fast --out runs/views_transfer": (
-        *_TRANSFER,
-        "stubborn views --split {tmp}/transfer --views 2 --seed 12 --shrink 4 --profile fast --out {tmp}/views",
-    ),
-    "stubborn views --split runs/rooms --views 400 --seed 12 --shrink 2 --profile fast --out runs/views_rooms": (
-        f"{_VIEWS} --seed 12",
-    ),
-    "stubborn evaluate --views runs/views_val runs/views_val_1": (
-        _VIEWS.replace("shard 4", "shard 2"),
-        "stubborn evaluate --views {tmp}/views {tmp}/views",
-    ),
-    "stubborn evaluate --views runs/views_val --weights runs/finer/rednet.safetensors"
-    " --against stubborn/segmentation/weights/rednet.safetensors": (
-        _VIEWS.replace("shard 4", "shard 2"),
-        f"stubborn evaluate --views {{tmp}}/views --weights {_SHIPPED} --against {_SHIPPED}",
-    ),
-    f"{_RUN} --agent stubborn-plus --split runs/transfer --episodes 100": (
-        *_TRANSFER,
-        f"{_RUN} --agent stubborn-plus --split {{tmp}}/transfer --episodes 1 --config task.max_steps=5"
-        " --out {tmp}/run",
-    ),
-    "stubborn report runs/harsh": (_RECORDED, "stubborn report {tmp}/mine"),
-    "stubborn report runs/before runs/after": _REPORTED,
-    "stubborn merge runs/big": (*_SHARDS, "stubborn merge {tmp}/big"),
-    # docs/segmentation.md
     "stubborn train segmentation --furniture runs/models --hours 1.5 --out runs/rednet": Only(
         "renders 800 views at least; test_views_mix.py and test_train_segmentation.py try its parts"
     ),
     "stubborn train segmentation --init shipped --init-share 0.5 --views views --val-views views_val "
     "--rate 0.0003 --hours 1 --out runs/finer": (
-        _VIEWS.replace("shard 4", "shard 2") + " --extras instances",
+        _VIEWS,
         "stubborn train segmentation --init shipped --init-share 0.5 --views {tmp}/views --val-views {tmp}/views "
         "--rate 0.0003 --hours 0.003 --batch 2 --out {tmp}/finer",
     ),
     "stubborn train names --views views --val-views views_val --minutes 30 --out runs/names": (
-        _VIEWS.replace("--views 4", "--views 40").replace("shard 4", "shard 40") + " --extras instances",
+        _VIEWS.replace("--views 4", "--views 40").replace("shard 2", "shard 40"),
         "stubborn train names --views {tmp}/views --val-views {tmp}/views --minutes 0.02 --batch 2 --val-count 4"
         " --out {tmp}/names",
     ),
-    "stubborn views show --views views_objects --out views.png": (
-        _VIEWS,
-        "stubborn views show --views {tmp}/views --out {tmp}/views.png",
-    ),
-    "stubborn views unpack --views views_objects --out views_png": (
-        _VIEWS,
-        "stubborn views unpack --views {tmp}/views --out {tmp}/views_png",
-    ),
-    f"{_RUN} --semantics examples.my_segmentation:SEGMENTATION --config detector.weights=my_network.pt": (
-        f"{PYTHON} -c 'import torch; from examples.my_segmentation import MyNetwork; "
-        'torch.save(MyNetwork().state_dict(), "{tmp}/my_network.pt")\'',
-        f"{_RUN} --semantics examples.my_segmentation:SEGMENTATION --config detector.weights={{tmp}}/my_network.pt"
-        f" task.max_steps=5 {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    "stubborn evaluate --views views_val --semantics examples.my_segmentation:SEGMENTATION"
-    " --config detector.weights=my_network.pt": (
-        _VIEWS,
-        f"{PYTHON} -c 'import torch; from examples.my_segmentation import MyNetwork; "
-        'torch.save(MyNetwork().state_dict(), "{tmp}/my_network.pt")\'',
-        "stubborn evaluate --views {tmp}/views --semantics examples.my_segmentation:SEGMENTATION"
-        " --config detector.weights={tmp}/my_network.pt",
-    ),
-    f"{_RUN} --semantics rednet --weights runs/rednet/rednet.safetensors": (
-        f"{_RUN} --semantics rednet --weights {_SHIPPED} {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
     "stubborn evaluate --views views_val --calibrate --card card.md --weights runs/rednet/rednet.safetensors": (
-        _VIEWS.replace("shard 4", "shard 2"),
+        _VIEWS,
         f'{PYTHON} -c \'import shutil; shutil.copy("stubborn/segmentation/weights/rednet.safetensors", "{{tmp}}")\'',
         "stubborn evaluate --views {tmp}/views --calibrate --card {tmp}/card.md --weights {tmp}/rednet.safetensors",
-    ),
-    "stubborn evaluate objects --views views_val --out worst.png": (
-        _VIEWS,
-        "stubborn evaluate objects --views {tmp}/views --out {tmp}/worst.png",
     ),
     "stubborn evaluate mistakes runs/mine --out runs/false.png": (
         f"{_RUN} {_SMALL} --agent tests.helpers.runners:make_quitter --episodes 1 --record --out {{tmp}}/looked",
         "stubborn evaluate mistakes {tmp}/looked --out {tmp}/false.png",
     ),
-    # docs/leaderboard.md
-    "stubborn submit runs/entry --name 'My agent' --authors 'A. Author' --out my_agent.json.gz": (_ENTRY, _SUBMIT),
-    "stubborn verify my_agent.json.gz": (_ENTRY, _SUBMIT, "stubborn verify {tmp}/my_agent.json.gz"),
     "stubborn seal make --out challenge/sealed2027 --secret-file secret.txt --houses 20 --episodes 400": (_SEAL,),
     "stubborn seal reveal challenge/sealed2027.sealed.json --secret-file secret.txt --out revealed/sealed2027": (
         _SEAL,
         "stubborn seal reveal {tmp}/sealed2027.sealed.json --secret-file {tmp}/secret --out {tmp}/revealed/sealed2027",
     ),
-    # docs/traps.md
     "stubborn episodes --split my_traps --recipe traps": _MY_TRAPS,
     "stubborn traps report --split my_traps --out runs/my_traps": (
         *_MY_TRAPS,
         "stubborn traps report --split {tmp}/traps --agents oracle --headings 1 --out {tmp}/report",
     ),
-    # docs/watching.md
-    # docs/worlds.md
-    f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
-    "stubborn label --house flat.xml --out labels.json --picture runs/flat.png": (
-        _SCENE,
-        "stubborn label --house {tmp}/s/flat.xml --out {tmp}/flat.json --picture {tmp}/flat.png",
-    ),
-    "stubborn label --house flat.xml --labels labels.json --picture runs/flat.png": (
-        _SCENE,
-        f"stubborn label {_OF_SCENE} --picture {{tmp}}/flat.png",
-    ),
-    "stubborn episodes --house flat.xml --labels labels.json --episodes 20 --out runs/flat_split": (_SCENE, _PACKED),
     f"{_RUN} --root {_KITCHEN} --house {_KITCHEN}/kitchen_assets/kitchen_env_model.xml"
     " --labels examples/worlds/kitchen.json --goal counter --semantics gt --episodes 2": _PACKAGE,
-    f"{_RUN} --robot carrier.xml --episodes 20": (
-        _ROBOT,
-        f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
-    ),
-    # docs/differences.md
-    "stubborn compare runs/default runs/paper_way": _COMPARED,
-    # docs/motions.md
     "stubborn reproduce motions --semantics gt --split val --episodes 100 --workers 2": (
         "stubborn reproduce motions --semantics gt --split val --agents oracle 'oracle --motion sliding' --episodes 1"
         " --workers 1 --out {tmp}/paper",
     ),
     "stubborn reproduce splits --episodes 100 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",
-    ),
-    f"{_RUN} --agent my_agent:make --semantics gt --episodes 2 --video --out runs/me": (
-        f"{_RUN} --agent examples.my_agent:make --semantics gt --video {_SMALL} --episodes 1 --out {{tmp}}/me",
-    ),
-    "stubborn report runs/me": (_RECORDED, "stubborn report {tmp}/mine"),
-    f"{_RUN} --config-file my_settings.toml": (
-        f'{PYTHON} -c \'from pathlib import Path; Path("{{tmp}}/my.toml").write_text("[task]\\nmax_steps = 3\\n")\'',
-        f"{_RUN} --config-file {{tmp}}/my.toml --semantics gt --episodes 1 {_SMALL} --out {{tmp}}/run",
     ),
     "stubborn reproduce splits --splits val hazards --agents stubborn 'stubborn --explorer tour'": (
         "stubborn reproduce splits --splits val hazards --agents oracle random --episodes 1 --out {tmp}/paper",
@@ -488,10 +357,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     " --episodes 720 --out runs/verifier.json": Only(
         "runs until there are enough candidates; tests/sim/app/commands/test_train_verifier.py runs a few episodes"
     ),
-    f"{_RUN} --weights runs/rednet/rednet.safetensors --verifier runs/verifier.json": (
-        f"{_RUN} --weights {_SHIPPED} --verifier stubborn/detection/verifiers/rednet.json {_SMALL} --episodes 1"
-        " --out {tmp}/run",
-    ),
     "stubborn train fusion --weights runs/rednet/rednet.safetensors --split runs/unseen --episodes 72"
     " --out runs/fusion.json": (
         *_UNSEEN,
@@ -504,42 +369,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn episodes --split {tmp}/own --episodes 3",
         "stubborn houses plans --split {tmp}/own --out {tmp}/plans/own",
     ),
-    "stubborn train context --plans runs/plans/unseen --out runs/context.json": (
-        *_PLANS,
-        "stubborn train context --plans {tmp}/plans --out {tmp}/context.json",
-    ),
-    f"{_RUN} --agent stubborn-plus --weights runs/rednet/rednet.safetensors --config"
-    " agent.seeker.tracks.evidence.fusion=runs/fusion.json agent.seeker.context=runs/context.json": (
-        f"{_RUN} --agent stubborn-plus --weights {_SHIPPED} --config"
-        " agent.seeker.tracks.evidence.fusion=stubborn/detection/fusions/rednet.json"
-        f" agent.seeker.context=stubborn/detection/context.json {_SMALL} --episodes 1"
-        " --out {tmp}/run",
-    ),
-    "stubborn train poni --plans runs/plans/train --minutes 30 --out runs/poni": (
-        *_PLANS,
-        "stubborn train poni --plans {tmp}/plans --minutes 0.05 --out {tmp}/poni",
-    ),
-    "stubborn train semexp --plans runs/plans/train --minutes 90 --out runs/semexp": (
-        *_PLANS,
-        "stubborn train semexp --plans {tmp}/plans --minutes 0.05 --out {tmp}/semexp",
-    ),
-    f"{_RUN} --agent semexp --config agent.explorer.weights=runs/semexp/semexp.safetensors --episodes 5": (
-        f"{_RUN} --agent semexp --config agent.explorer.weights=stubborn/exploration/weights/semexp.safetensors"
-        f" {_SMALL} --semantics gt --episodes 1 --out {{tmp}}/run",
-    ),
     "stubborn import furniture --source my_models --out runs/models": _MODELS,
     "stubborn import furniture infinigen --python infinigen/bin/python --out runs/infinigen": Only(
         "needs an installed Infinigen; tests/sim/app/commands/test_import_infinigen.py has a process in its place"
     ),
     "stubborn import furniture --source runs/infinigen my_models --out runs/models": _MODELS,
-    "stubborn import procthor train.jsonl.gz --out runs/procthor": (
-        _FOREIGN.replace("foreign", "procthor") + 'write_small_house(Path("{tmp}/source"))\'',
-        "stubborn import procthor {tmp}/source/houses.jsonl.gz --out {tmp}/houses",
-    ),
-    "stubborn import molmospaces scenes --out runs/molmospaces": (
-        _FOREIGN.replace("foreign", "molmospaces") + 'write_scene(Path("{tmp}/scenes"))\'',
-        "stubborn import molmospaces {tmp}/scenes --out {tmp}/houses",
-    ),
     "stubborn import robocasa kitchen.xml --root assets --out runs/kitchen": (
         _FOREIGN.replace("foreign", "robocasa") + 'write_kitchen(Path("{tmp}/source"))\'',
         "stubborn import robocasa {tmp}/source/scenes --root {tmp}/source --out {tmp}/houses --pictures 0",
@@ -552,26 +386,21 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _FOREIGN.replace("foreign", "scanned") + 'write_glb(Path("{tmp}/source"))\'',
         "stubborn import mesh {tmp}/source/flat.glb --out {tmp}/houses --pictures 0",
     ),
-    "stubborn houses check --house runs/houses/house_00000.xml": (
-        _HOUSES,
-        "stubborn houses check --house {tmp}/houses/house_00000.xml --views 2",
-    ),
     f"{_RUN} --agent habitat:my_agent:MyAgent --config agent.checkpoint=policy.pth": Only(
         "needs an agent of the reader's; tests/sim/app/bridges/test_habitat_agents.py writes one"
     ),
-    # docs/ros.md
     "stubborn habitat dataset --split val --out data/datasets/objectnav/stubborn/v1/val": (
         "stubborn houses generate --split val --houses 1 --out {tmp}/one",
         "stubborn episodes --split {tmp}/one --episodes 2 --no-pictures",
         "stubborn habitat dataset --split {tmp}/one --out {tmp}/lab/one",
     ),
     f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
-    " 451' --config agent.interface=habitat": Only(_PUBLISHED),
+    " 451' --config agent.interface=habitat": Only("needs a repository of others, which is not part of this project"),
     "stubborn traps report --split contact-val --agents oracle stubborn --out runs/contact": (
         "stubborn traps report --split contact-val --agents oracle --traps jam_easy_00 --no-pictures --out {tmp}/out",
     ),
 }
-"""Commands that need other files first, or more than `reduced`: what is run, at last the tool with the same options.
+"""Commands for which `INPUTS` and `reduced` are not enough: what is run, at last the tool with the same options.
 
 `{tmp}` is a scratch folder.
 """
@@ -609,10 +438,15 @@ _FEWER = {
     "episodes": {"--episodes": "1"},
     "views": {"--views": "1", "--views-per-shard": "1", "--workers": "1"},
     "houses generate": {"--houses": "1"},
+    "train poni": {"--minutes": "0.05"},
+    "train semexp": {"--minutes": "0.05"},
 }
 """Options of commands with their values in a trial, where the command has them."""
 _PLACES = {"--house", "--split", "--only", "--goal"}
 """Options of `stubborn run` that name its episodes."""
+
+
+_OUTPUTS = ("--out", "--picture")
 
 
 def trial_of(command: str) -> tuple[str, ...] | Only:
@@ -620,26 +454,41 @@ def trial_of(command: str) -> tuple[str, ...] | Only:
     if command in TRIALS:
         return TRIALS[command]
     whys = [why for part, why in UNTRIED.items() if f" {part}" in f" {command}"]
-    return Only(whys[0]) if whys else (reduced(command),)
-
-
-def reduced(command: str) -> str:
-    """Returns a command with one episode or view and one process, whose results go to `{tmp}`; agents get 3 steps."""
+    if whys:
+        return Only(whys[0])
     program, words = program_of(command)
-    head = shlex.split(command)[: -len(words)] if words else shlex.split(command)
-    for option, value in {"--out": "{tmp}/out", **_FEWER.get(program, {})}.items():
-        if option in words:
-            words[words.index(option) + 1] = value
-    if program == "run" and "--list-agents" not in words:
-        words = [word for word in words if not word.startswith("task.max_steps=")]
-        given = set(words)
+    first = shlex.split(command)[: -len(words)] if words else shlex.split(command)
+    makers: dict[str, None] = {}
+    for at, word in enumerate(words):
+        option, equals, value = word.rpartition("=")
+        name = next((name for name in INPUTS if value == name or value.startswith(f"{name}/")), None)
+        if name is not None and words[at - 1] not in _OUTPUTS:
+            file, written_by = INPUTS[name]
+            words[at] = option + equals + file + value.removeprefix(name)
+            makers |= dict.fromkeys(written_by)
+    return (*makers, shlex.join([*first, *reduced(program, words)]))
+
+
+def reduced(program: str, words: Sequence[str]) -> list[str]:
+    """Returns the options of a command with less to do: one episode or view, and one process; agents get 3 steps.
+
+    What it writes goes to `{tmp}`.
+    """
+    less = [word for word in words if not word.startswith("task.max_steps=")]
+    given = set(words)
+    for at, option in enumerate(less[:-1]):
+        if option in _OUTPUTS:
+            less[at + 1] = f"{{tmp}}/{Path(less[at + 1]).name}"
+        elif option in _FEWER.get(program, {}):
+            less[at + 1] = _FEWER[program][option]
+    if program == "run":
         if "--config" not in given:
-            words.append("--config")
-        words.insert(words.index("--config") + 1, "task.max_steps=3")
+            less.append("--config")
+        less.insert(less.index("--config") + 1, "task.max_steps=3")
         if not given & _PLACES:
-            words += shlex.split(_SMALL)
+            less += shlex.split(_SMALL)
         if not given & {"--episodes", "--only"}:
-            words += ["--episodes", "1"]
+            less += ["--episodes", "1"]
         if "--out" not in given:
-            words += ["--out", "{tmp}/out"]
-    return shlex.join([*head, *words])
+            less += ["--out", "{tmp}/run"]
+    return less
