@@ -99,8 +99,8 @@ def segmenter_of(run: Run) -> NetworkSegmenter | OwnSegmenter:
     """Returns the segmenter of a run; prints a sentence if its network computes in another precision here.
 
     Raises:
-        ConfigError: the run had another robot or camera than ours, neither a network nor a segmentation of the user,
-            or its weights have been deleted or replaced.
+        ConfigError: the run had another robot or camera than ours, its agent acted on neither a network nor a
+            segmentation of the user, or its weights have been deleted or replaced.
     """
     tree, semantics = run.config.get("config", {}), str(run.config.get("semantics"))
     robot = {name: value for name, value in tree.get("robot", {}).items() if name != "motion"}  # it changes no picture
@@ -109,6 +109,11 @@ def segmenter_of(run: Run) -> NetworkSegmenter | OwnSegmenter:
     for part, ours, used in (("camera", CameraModel(), tree.get("camera", {})), ("robot", RobotConfig(), robot)):
         if with_fields(ours, used) != ours:
             raise ConfigError(f"'{run.path}' had another {part} than ours; views are drawn with ours.")
+    declared = run.config.get("segmentation")
+    if declared is not None and declared.keys() == {"name"}:  # no declaration of a source of `--semantics`
+        raise ConfigError(
+            f"The agent of '{run.path}' did not use --semantics; its segmentation is {declared['name'] or 'none'}."
+        )
     if ":" in semantics:
         settings = run.config.get("settings", {})
         of_detector = {name: value for name, value in settings.items() if name.startswith("detector.")}

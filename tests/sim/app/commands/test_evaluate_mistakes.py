@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.app.analysis.comparison import read_run
+from sim.app.analysis.comparison import Run, read_run
 from sim.app.commands import run
 from sim.app.commands.evaluate import mistakes as show_mistakes
 from sim.app.commands.evaluate.mistakes import Args
@@ -136,6 +136,12 @@ def test_a_run_of_another_camera_or_network_is_not_drawn_with_this_one(
     run_of = read_run(recorded / "run")
     with pytest.raises(ConfigError, match=message):
         show_mistakes.segmenter_of(replace(run_of, config={**run_of.config, **changes}))
+
+
+def test_a_run_whose_agent_did_not_use_the_segmentation_is_not_drawn_with_it(tmp_path: Path) -> None:
+    run_of = Run(tmp_path, {"agent": "random", "semantics": "rednet", "segmentation": {"name": None}}, {})
+    with pytest.raises(ConfigError, match="did not use --semantics; its segmentation is none"):
+        show_mistakes.segmenter_of(run_of)
 
 
 def test_another_motion_changes_no_picture_and_a_goal_in_words_has_no_score(recorded: Path) -> None:
