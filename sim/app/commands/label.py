@@ -82,7 +82,8 @@ def main(args: Args) -> int:
         say(sentence)
     if args.out is not None:
         write_atomically(args.out, rules_text(rules))
-        say(f"Wrote {len(rules)} rules to {args.out}. Edit the categories, then check them with --labels.")
+        wrote = f"Wrote {display.counted(len(rules), 'rule')} to {args.out}."
+        say(f"{wrote} Edit the categories, then check them with --labels.")
     if args.picture is not None:
         plain, coloured = draw_top(house), draw_top(house, colours=distinct_colours(labels.categories()))
         write_picture(args.picture, np.hstack([plain, coloured]))

@@ -71,8 +71,8 @@ def main(args: Args) -> int:
         copy_files(run, results, added, out)
     stored = read_record(out / "config.json")  # the folder may hold an earlier merge of other episodes
     missing = max(stored["episodes"] - len(merged.lines), 0)
-    message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
-    console.print(message, soft_wrap=True)
+    counts = f"{display.counted(len(merged.lines), 'episode')} of {display.counted(len(runs), 'run')}"
+    console.print(f"{counts}, {missing} missing; results in {out}", soft_wrap=True)
     keys = list(dict.fromkeys(str(run.config["seed_key"]) for run in runs if run.config.get("seed_key")))
     if len(keys) > 1:
         console.print(f"The runs have different seed keys ({', '.join(keys)}); with --seed-key they share one.")

@@ -20,6 +20,7 @@ from jaxtyping import UInt8
 from numpy.typing import NDArray
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.commands.evaluate.segmentation import BATCH, loader
 from sim.app.composition.segmenters import weights_file
 from sim.app.viewers.palette import with_legend
@@ -87,7 +88,7 @@ def main(args: Args) -> int:
     for missed in chosen:
         print(f"{missed.view.key}: {missed.category}, {missed.missed_px} px missed, mostly as {missed.taken_for}")
     write_picture(args.out, tiled([draw(missed) for missed in chosen], columns=1))
-    print(f"{len(chosen)} objects in {args.out}")
+    print(f"{counted(len(chosen), 'object')} in {args.out}")
     return 0
 
 

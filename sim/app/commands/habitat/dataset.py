@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.bridges.habitat.conversions import CATEGORIES
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError
@@ -87,7 +88,8 @@ def main(args: Args) -> int:
         files[args.out / "content" / f"{house}.json.gz"] = habitat.zipped_json(content)
     write_together(files)
     size = sum(file.stat().st_size for file in files) / 1e6
-    print(f"{args.out}: {len(houses)} houses, {count} episodes, {points} view points, {size:.1f} MB.")
+    counts = f"{counted(len(houses), 'house')}, {counted(count, 'episode')}, {counted(points, 'view point')}"
+    print(f"{args.out}: {counts}, {size:.1f} MB.")
     return 0
 
 
@@ -114,7 +116,7 @@ def _write_words(args: Args, split: Split) -> int:
         files[args.out / "content" / f"{house}.json.gz"] = habitat.zipped_json(content)
     write_together(files)
     size = sum(file.stat().st_size for file in files) / 1e6
-    print(f"{args.out}: {len(houses)} houses, {len(split.episodes)} episodes, {size:.1f} MB.")
+    print(f"{args.out}: {counted(len(houses), 'house')}, {counted(len(split.episodes), 'episode')}, {size:.1f} MB.")
     return 0
 
 

@@ -153,5 +153,6 @@ def _export(out: Path, name: str, source: dict[str, Json], make: Callable[[], Ho
         return Exported(name, "no plan: it has no free space", failed=True)
     free_m2 = sum(plan.free.sum() * plan.frame.cell_m**2 for plan in plans)
     seconds = time.process_time() - began_s
-    summary = f"{free_m2:.0f} m2 of free space, {len(plans)} storeys, {len(plans[0].goals())} goals, {seconds:.1f} s"
+    counts = f"{counted(len(plans), 'storey')}, {counted(len(plans[0].goals()), 'goal')}"
+    summary = f"{free_m2:.0f} m2 of free space, {counts}, {seconds:.1f} s"
     return Exported(name, summary, seconds)

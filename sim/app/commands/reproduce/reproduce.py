@@ -227,7 +227,7 @@ def _write_all(args: Args, pages: Sequence[str], console: Console) -> None:
     if pages:
         file = args.out / "tables" / f"{stem_of(args, args.table)}.md"
         write_atomically(file, "\n".join(pages))
-        console.print(f"{len(pages)} tables on {file}")
+        console.print(f"{display.counted(len(pages), 'table')} on {file}")
 
 
 def _write_pages(args: Args, of_splits: Sequence[Args], pages: Mapping[str, Sequence[str]], console: Console) -> None:

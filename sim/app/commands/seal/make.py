@@ -16,19 +16,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.commands import episodes
 from sim.app.evaluation.parallel import ordered_map
 from sim.app.submissions.announcement import Commit, Episodes, Houses, read_announcement, secret_of, write_published
-from sim.app.submissions.sealing import (  # fmt: skip
-    LIKE,
-    VERSION,
-    new_secret,
-    number_of,
-    read_secret,
-    recipes,
-    seal_file,
-    seal_of,
-)
+from sim.app.submissions.sealing import LIKE, VERSION, new_secret, number_of, read_secret, recipes, seal_file, seal_of
 from sim.core.errors import ConfigError, HouseError
 from sim.core.files import write_atomically
 from sim.core.reading import convert, sha256_of
@@ -76,7 +68,7 @@ def main(args: Args) -> int:
     args.out.chmod(0o700)  # the houses are secret until the deadline
     split = make_split(args.out, secret, houses=args.houses, episode_count=args.episodes, workers=args.workers)
     write_published(seal_file(args.out), seal_of(split, secret), "a seal")
-    print(f"{args.out}: {args.houses} houses, {args.episodes} episodes, sha256 {split.sha256}.")
+    print(f"{args.out}: {counted(args.houses, 'house')}, {counted(args.episodes, 'episode')}, sha256 {split.sha256}.")
     print(f"Publish {seal_file(args.out)}; keep {args.out} and {args.secret_file} until the deadline.")
     return 0
 
@@ -91,7 +83,8 @@ def _make_announced(args: Args, file: Path) -> int:
         raise ConfigError(f"--out must be a folder named '{announcement.name}', as '{file}' announces.")
     split, secret = make_announced_split(args.out, file, args.beacon, workers=args.workers)
     write_published(seal_file(args.out), seal_of(split, secret, (file, args.beacon)), "a seal")
-    print(f"{args.out}: {announcement.houses} houses, {announcement.episodes} episodes, sha256 {split.sha256}.")
+    size = f"{counted(announcement.houses, 'house')}, {counted(announcement.episodes, 'episode')}"
+    print(f"{args.out}: {size}, sha256 {split.sha256}.")
     print(f"Commit {seal_file(args.out)}, then run the agent that was frozen.")
     return 0
 

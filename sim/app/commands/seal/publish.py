@@ -14,6 +14,7 @@ from typing import Annotated
 import tyro
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.submissions.announcement import write_published
 from sim.app.submissions.sealing import seal_file, seal_of
 from sim.episodes.splits import load_split
@@ -34,5 +35,5 @@ def main(args: Args) -> int:
     split = load_split(args.split)
     seal, out = seal_of(split, None), args.out or seal_file(args.split)
     write_published(out, seal, "a seal")
-    print(f"{out}: {seal.houses} houses, {seal.episodes} episodes, sha256 {seal.split_sha256}.")
+    print(f"{out}: {counted(seal.houses, 'house')}, {counted(seal.episodes, 'episode')}, sha256 {seal.split_sha256}.")
     return 0

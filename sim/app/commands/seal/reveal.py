@@ -19,6 +19,7 @@ from typing import Annotated
 import tyro
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.commands.seal.make import make_split, require_empty
 from sim.app.submissions.announcement import faults_of_order, secret_of
 from sim.app.submissions.sealing import Seal, digest_of, other_versions, read_seal, read_secret, require_sealed
@@ -63,7 +64,7 @@ def main(args: Args) -> int:
     else:
         split = load_split(args.split)
         require_sealed(split, seal)
-    print(f"'{split.name}' is the sealed split: {seal.houses} houses, {seal.episodes} episodes.")
+    print(f"'{split.name}' is the sealed split: {counted(seal.houses, 'house')}, {counted(seal.episodes, 'episode')}.")
     if args.split is not None and seal.secret_sha256 is not None:
         print("Only the secret (--secret-file, --announced) shows that its houses were drawn from it.")
     if seal.beacon_by == "authors":

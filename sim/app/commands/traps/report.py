@@ -93,7 +93,7 @@ def main(args: Args) -> int:
             with open_to_grow(results, "a") as file:
                 file.write(json.dumps(asdict(rows[-1])) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
-            console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")
+            console.print(f"{name} {trial.episode_id}: {outcome} after {display.counted(len(trial.motions), 'step')}")
     table = table_of(rows)
     write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": to_markdown([table])})
     write_family_report(args.out, rows, args.split, facts, pictures=args.pictures)

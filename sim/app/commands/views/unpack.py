@@ -54,7 +54,7 @@ def main(args: Args) -> int:
     if images:
         coco = {"images": images, "annotations": objects, "categories": CATEGORIES}
         write_atomically(args.out / "coco.json", json.dumps(coco))
-        print(f"{len(objects)} objects in {args.out / 'coco.json'}")
+        print(f"{counted(len(objects), 'object')} in {args.out / 'coco.json'}")
     print(f"{counted(count, 'view')} in {args.out}")
     return 0
 

@@ -108,11 +108,11 @@ def test_runs_of_named_episodes_become_one_of_all_these(tmp_path: Path, capsys: 
     assert "Missing: e4" in output
     assert json.loads((tmp_path / "both" / "config.json").read_text())["only"] == ["e0", "e1", "e3", "e4"]
     assert main(Args(runs=(first,), out=tmp_path / "both")) == 1  # again
-    assert "3 episodes of 1 runs, 1 missing" in (output := capsys.readouterr().out)
+    assert "3 episodes of 1 run, 1 missing" in (output := capsys.readouterr().out)
     assert "Missing: e4" in output
     late = write(tmp_path / "late", [line_of(4)], only=["e4", "e5"], episodes=2)
     assert main(Args(runs=(late,), out=tmp_path / "both")) == 1
-    assert "4 episodes of 1 runs, 1 missing" in (output := capsys.readouterr().out)
+    assert "4 episodes of 1 run, 1 missing" in (output := capsys.readouterr().out)
     assert "Missing: e5" in output
     whole = write(tmp_path / "c", [line_of(2)], only=[], episodes=4)
     assert main(Args(runs=(first, whole), out=tmp_path / "more")) == 1

@@ -32,7 +32,7 @@ def test_a_published_split_is_revealed_by_its_folder_and_a_changed_one_is_not(
     assert publish.main(publish.Args(split=split)) == 0
     seal = tmp_path / "tiny.sealed.json"
     assert reveal.main(reveal.Args(seal=seal, split=split)) == 0
-    assert "'tiny' is the sealed split: 1 houses, 3 episodes." in capsys.readouterr().out
+    assert "'tiny' is the sealed split: 1 house, 3 episodes." in capsys.readouterr().out
     with pytest.raises(ConfigError, match=wording.IT_MAY_BE_A_SEAL_THAT_WAS_PUBLISHED):
         publish.main(publish.Args(split=split))
     secret = tmp_path / "secret"
