@@ -30,15 +30,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
-from sim.app.services.detectors import (
-    Detector,
-    NetworkDetector,
-    Segment,
-    detections,
-    mask_in,
-    phrases_of,
-    share_of,
-)
+from sim.app.services.detectors import Detector, NetworkDetector, Segment, detections, mask_in, phrases_of, share_of
 from sim.app.services.forms import posteriors_bytes, read_view
 from sim.app.services.frames import MAX_FRAMES, Frame, Shelf, UnknownPictureError
 from sim.app.services.words import COCO

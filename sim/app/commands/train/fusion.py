@@ -24,12 +24,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from sim.app.commands.train.episode_logs import (
-    LogOptions,
-    checked_split,
-    default_log,
-    lines_of,
-)
+from sim.app.commands.train.episode_logs import LogOptions, checked_split, default_log, lines_of
 from sim.app.composition.segmenters import find_segmentation, make_segmenter
 from sim.app.evaluation.workers import RunnerSpec
 from sim.core.files import write_atomically

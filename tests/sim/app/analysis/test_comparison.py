@@ -10,13 +10,7 @@ from pathlib import Path
 import pytest
 from msgspec.structs import replace as changed
 
-from sim.app.analysis.comparison import (
-    code_of,
-    compare,
-    differences_table,
-    read_run,
-    require_same_episodes,
-)
+from sim.app.analysis.comparison import code_of, compare, differences_table, read_run, require_same_episodes
 from sim.app.analysis.metrics import replicate_note
 from sim.app.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich, with_corrections
 from sim.app.commands.compare import verdict
