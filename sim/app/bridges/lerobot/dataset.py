@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import av
 import numpy as np
 from numpy.typing import NDArray
 
@@ -140,7 +141,7 @@ class DatasetWriter:
                 "shape": [*picture, 3],
                 "names": ["height", "width", "channels"],
                 "info": {
-                    "video.height": picture[0], "video.width": picture[1], "video.codec": "h264",
+                    "video.height": picture[0], "video.width": picture[1], "video.codec": self._codec(),
                     "video.pix_fmt": "yuv420p", "video.is_depth_map": False, "video.fps": FPS, "video.channels": 3,
                     "has_audio": False,
                 },
@@ -159,6 +160,11 @@ class DatasetWriter:
         stats = {name: joined_stats([_stats_in(entry, name) for entry in entries]) for name in features}
         for name, content in (("stats", stats), ("info", info)):
             write_atomically(self._folder / "meta" / f"{name}.json", json.dumps(content, indent=4) + "\n")
+
+    def _codec(self) -> str:
+        """Returns the codec of the first video, such as `h264`; which one is written depends on PyAV."""
+        with av.open(str(self._file(VIDEO, 0))) as video:
+            return video.streams.video[0].codec.canonical_name
 
     def _file(self, pattern: str, number: int) -> Path:
         place = {"chunk_index": number // CHUNK, "file_index": number % CHUNK, "video_key": IMAGE}

@@ -18,6 +18,7 @@ from sim.app.bridges.lerobot.dataset import image_stats, joined_stats, stats_of
 from sim.app.bridges.lerobot.environment import LeRobotEnv
 from sim.app.bridges.lerobot.replays import Replayer
 from sim.app.commands.export import lerobot
+from sim.app.viewers.video import CODECS
 from sim.core.errors import ConfigError, EpisodeError
 from sim.core.interface import GOAL_CATEGORIES, MOVES, Action
 from sim.episodes.splits import load_split
@@ -63,13 +64,18 @@ def test_actions_goals_and_tasks_in_the_form_of_policies() -> None:
 
 
 @pytest.mark.costly
-@pytest.mark.parametrize("run", ["oracle", "noisy"])
-def test_a_dataset_has_the_recorded_actions_poses_and_pictures(folder: Path, tmp_path: Path, run: str) -> None:
+@pytest.mark.parametrize(("run", "codec"), [("oracle", "h264"), ("noisy", "vp9")])
+def test_a_dataset_has_the_recorded_actions_poses_and_pictures(
+    folder: Path, tmp_path: Path, run: str, codec: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if codec == "vp9":
+        monkeypatch.delitem(CODECS, "libx264")
     export(folder, run, tmp_path)
     results = read_run(folder / run).results
     info = json.loads((tmp_path / "meta" / "info.json").read_text())
     assert (info["total_episodes"], info["fps"], info["codebase_version"]) == (len(results), 4, "v3.0")
     assert info["features"]["observation.image"]["shape"] == [36, 48, 3]
+    assert info["features"]["observation.image"]["info"]["video.codec"] == codec
     first_row = 0
     for number, (episode_id, result) in enumerate(results.items()):
         trajectory = read_trajectory(trajectory_file(folder / run, episode_id))
