@@ -3,13 +3,14 @@
 python -m tools.research.compare_published --checkout ../Stubborn --python ../env/bin/python
 
 CHECKOUT is a clone of https://github.com/Improbable-AI/Stubborn, PYTHON an environment with the packages that
-docs/habitat.md lists. The published agent runs in that environment (`tools.research.published_stubborn`). The folder of
-each split gets one run for each agent, and comparison.md: differences are this project's minus the published ones. Runs
-that were interrupted continue.
+docs/habitat.md lists. The published agent runs in that environment (`tools.research.published_stubborn`). The folder
+OUT/SPLIT/MOTION gets a run of each agent, and comparison.md: differences are this project's minus the published ones.
+Runs that were interrupted continue.
 """
 
 from __future__ import annotations
 
+import itertools
 import os
 import pickle
 import shlex
@@ -43,6 +44,8 @@ class Args:
     """Python of the environment of the published agent."""
     episodes: dict[str, int] = field(default_factory=lambda: {"val": 100, "hazards": 50})
     """Number of episodes of each split."""
+    motions: tuple[str, ...] = ("contacts",)
+    """Kinds of motion, as in `stubborn run --motion`."""
     workers: cli.Count = 1
     """Number of processes."""
     out: cli.OutFolder = Path("runs/published")
@@ -58,12 +61,12 @@ def main(args: Args) -> int:
     words = [str(args.python.absolute()), str(out / "stubborn_client.py"), "published_stubborn:WithTrueMasks"]
     published = ["--agent", f"process:{shlex.join(words)}", "--config", "agent.interface=habitat"]
     published += ['sensors=["rgb", "depth", "semantic"]', "agent.start_timeout_s=1800", "--step-timeout", "600"]
-    for split, episodes in args.episodes.items():
-        common = ["--split", split, "--episodes", str(episodes), "--workers", str(args.workers)]
-        runs = [out / split / name for name in ("published", "stubborn")]
+    for (split, episodes), motion in itertools.product(args.episodes.items(), args.motions):
+        common = ["--split", split, "--episodes", str(episodes), "--motion", motion, "--workers", str(args.workers)]
+        runs = [out / split / motion / name for name in ("published", "stubborn")]
         for folder, options in zip(runs, (published, ["--semantics", "gt"]), strict=True):
             stubborn("run", *options, *common, "--out", str(folder), folder=checkout)
-        stubborn("compare", *map(str, runs), "--out", str(out / split), folder=checkout)
+        stubborn("compare", *map(str, runs), "--out", str(out / split / motion), folder=checkout)
     return 0
 
 
