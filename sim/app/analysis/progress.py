@@ -132,7 +132,7 @@ class ProgressReport:
         waiting = self._total - self._done - len(counts)
         remaining = waiting * expected + sum(max(0.0, expected - count) for count in counts)
         rate, bound = (made - self._first[1]) / (now_s - self._first[0]), "about" if self._done else "at most"
-        if remaining == 0.0:  # the last episodes are longer than the ones before them
+        if remaining < rate:  # less than a second: the last episodes are longer than the ones before them
             return f"; {rate:.1f} steps/s"
         return f"; {rate:.1f} steps/s, {bound} {_duration(remaining / rate)} left"
 

@@ -89,7 +89,8 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
             elif words[0] == "usemtl":
                 material = " ".join(words[1:])
             elif words[0] == "mtllib":
-                _read_materials(file.parent, " ".join(words[1:]), texture_px, content.paints, losses)
+                for library in _libraries(file.parent, words[1:]):
+                    _read_materials(file.parent, library, texture_px, content.paints, losses)
         except (ValueError, IndexError) as fault:
             raise HouseError(f"{where}, line {number}: '{printable(line)[:60]}' cannot be read: {fault}.") from None
     if not content.faces:
@@ -214,12 +215,19 @@ def _is_value(word: str) -> bool:
 
 def used_files(file: Path) -> Iterator[Path]:
     """Yields the files of its folder that an OBJ file and its materials name, whether they exist or not."""
-    for named in _words_after("mtllib", file):
-        materials = path_inside(file.parent, " ".join(named))
+    for library in (name for words in _words_after("mtllib", file) for name in _libraries(file.parent, words)):
+        materials = path_inside(file.parent, library)
         if materials is not None:
             yield materials
             pictures = (path_inside(file.parent, _picture_name(words)) for words in _words_after("map_Kd", materials))
             yield from (picture for picture in pictures if picture is not None)
+
+
+def _libraries(folder: Path, words: list[str]) -> list[str]:
+    """Returns the names of the files after `mtllib`: several files, or one whose name has spaces."""
+    whole = " ".join(words)
+    several = [path_inside(folder, word) for word in words]
+    return words if all(path is not None and path.is_file() for path in several) else [whole]
 
 
 def _words_after(key: str, file: Path) -> Iterator[list[str]]:

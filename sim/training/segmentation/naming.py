@@ -211,13 +211,10 @@ class Trainer(TimedTraining):
         among = self.groups.members[several].any(axis=0) & (count > 0)  # names that share a category with another
         shares = right[among] / count[among]
         row: dict[str, object] = {"objects": int(count.sum()), "loss": float(np.mean(losses))}
-        row |= {"names": int(among.sum()), "right": float(shares.mean())}
+        row |= {"names": int(among.sum()), "right": float(shares.mean()) if len(shares) else ""}
         row |= {name: round(float(right[i] / count[i]), 3) if count[i] else "" for i, name in enumerate(self.names)}
-        return (
-            float(np.mean(losses)),
-            row,
-            f"loss {row['loss']:.3f}, right {row['right']:.3f} as a mean of {row['names']} names",
-        )
+        right_text = f", right {row['right']:.3f} as a mean of {row['names']} names" if len(shares) else ""
+        return float(np.mean(losses)), row, f"loss {row['loss']:.3f}{right_text}"
 
     def about(self) -> Mapping[str, object]:
         """See `TimedTraining.about`."""

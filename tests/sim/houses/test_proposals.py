@@ -9,8 +9,9 @@ import pytest
 
 from sim.app.commands.label import Args, _read
 from sim.core.interface import MPCAT40_ID
+from sim.houses.geoms import data_at_rest
 from sim.houses.labels import read_labels
-from sim.houses.proposals import category_by_size, category_of_name, propose, rules_of, size_doubt
+from sim.houses.proposals import category_by_size, category_of_name, geom_box, propose, rules_of, size_doubt
 from tests.helpers.foreign import write_scene
 
 NAMES = {
@@ -116,8 +117,18 @@ def test_a_geom_without_any_name_has_its_number_as_a_name() -> None:
     assert labels.geom_category.tolist() == [MPCAT40_ID[name] for name in ("floor", "wall", "plant")]
 
 
-def _model(*world: str):
+def test_the_box_around_a_turned_mesh_is_that_of_its_vertices() -> None:
+    mesh = '<mesh name="wedge" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/>'
+    model = _model('<geom name="w" type="mesh" mesh="wedge" pos="3 0 0" euler="0 0 45"/>', assets=mesh)
+    low, high = geom_box(model, data_at_rest(model), model.geom("w").id)
+    half = np.sqrt(0.5)
+    np.testing.assert_allclose((low, high), [(3.0 - half, 0.0, 0.0), (3.0 + half, half, 1.0)], atol=1e-6)
+
+
+def _model(*world: str, assets: str = ""):
     from sim.gl import mujoco
 
     floor = '<geom name="g" type="plane" size="5 5 1"/>'
-    return mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{floor}{''.join(world)}</worldbody></mujoco>")
+    return mujoco.MjModel.from_xml_string(
+        f"<mujoco><asset>{assets}</asset><worldbody>{floor}{''.join(world)}</worldbody></mujoco>"
+    )

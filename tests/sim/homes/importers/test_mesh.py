@@ -156,6 +156,18 @@ def test_materials_of_an_obj_file_have_an_opacity_and_a_picture_whose_name_has_s
     assert found == {"all kinds.mtl", "my picture.png", "sub/b.png"}
 
 
+def test_an_obj_file_may_name_several_files_of_materials_in_one_line(tmp_path: Path) -> None:
+    for name, colour in (("a", "1 0 0"), ("b", "0 1 0")):
+        (tmp_path / f"{name}.mtl").write_text(f"newmtl {name}\nKd {colour}\n")
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+    (tmp_path / "home.obj").write_text(f"mtllib a.mtl b.mtl\n{corners}usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n")
+    losses = Losses()
+    read = read_obj(tmp_path / "home.obj", texture_px=64, losses=losses.changes)
+    assert [surface.paint.rgba[:3] for surface in read] == [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    assert not losses.changes
+    assert {file.name for file in files_of(tmp_path / "home.obj")} == {"a.mtl", "b.mtl"}
+
+
 @pytest.mark.costly
 def test_a_home_is_imported_again_when_its_materials_change(tmp_path: Path) -> None:
     file, out = write_obj(tmp_path), tmp_path / "out"

@@ -18,6 +18,7 @@ from sim.training.views.coco import annotate
 from sim.training.views.shards import write_shard
 from sim.training.views.views import View
 from stubborn.segmentation.checkpoints import load_network, save_network
+from stubborn.segmentation.names import NameGroups
 from stubborn.segmentation.networks import without_names
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
@@ -87,6 +88,15 @@ def test_the_head_learns_to_tell_names_apart_and_the_network_stays(folder: Path)
     assert all(torch.equal(state[name], tensor) for name, tensor in without_names(shipped).state_dict().items())
     assert metadata["calibration"] == of_shipped["calibration"]
     assert metadata["names"]["val"]["right"] == right
+
+
+@pytest.mark.costly
+def test_without_names_that_share_a_category_no_share_of_right_ones_is_reported(folder: Path):
+    trainer = Trainer(args_of(folder, val_count=2))
+    trainer.groups = NameGroups.of(("bed", "fridge"))
+    _, row, text = trainer.evaluate(trainer.model)
+    assert (row["names"], row["right"]) == (0, "")
+    assert "right" not in text
 
 
 @pytest.mark.costly
