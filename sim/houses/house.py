@@ -77,11 +77,24 @@ def read_rooms(model: mujoco.MjModel) -> tuple[Room, ...]:
     """Returns the rooms that sites of the world body declare, in the model's order."""
     boxes: dict[str, tuple[str, list[Box]]] = {}
     for site in range(model.nsite):
-        match = _ROOM.fullmatch(model.site(site).name)
-        if match is None or model.site_bodyid[site] != 0 or model.site_type[site] != mujoco.mjtGeom.mjGEOM_BOX:
-            continue
-        boxes.setdefault(match["room"], (match["kind"], []))[1].append(site_box(model, site))
+        if (match := _room_of(model, site)) is not None:
+            boxes.setdefault(match["room"], (match["kind"], []))[1].append(site_box(model, site))
     return tuple(Room(name, kind, tuple(parts)) for name, (kind, parts) in boxes.items())
+
+
+def sites_without_room(model: mujoco.MjModel) -> list[str]:
+    """Returns the names of the sites that are named like a room and declare none."""
+    return [
+        name
+        for site in range(model.nsite)
+        if (name := model.site(site).name).lower().startswith("room") and _room_of(model, site) is None
+    ]
+
+
+def _room_of(model: mujoco.MjModel, site: int) -> re.Match[str] | None:
+    """Returns the name and the kind of the room that a site declares; None if it declares none."""
+    is_box = model.site_bodyid[site] == 0 and model.site_type[site] == mujoco.mjtGeom.mjGEOM_BOX
+    return _ROOM.fullmatch(model.site(site).name) if is_box else None
 
 
 def site_box(model: mujoco.MjModel, site: int) -> Box:

@@ -8,8 +8,10 @@ houses it also tests the floor plan, and the furniture that each kind of room mu
 from __future__ import annotations
 
 import copy
+import difflib
+import itertools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,10 +20,11 @@ from numpy.typing import NDArray
 from sim.core.errors import HouseError
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
+from sim.core.wishes import ROOMS
 from sim.gl import mujoco
 from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.hazards import Hazard, read_hazards
-from sim.houses.house import House, Room, read_rooms
+from sim.houses.house import House, Room, read_rooms, sites_without_room
 from sim.houses.instance_facts import read_instance_facts
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
 from sim.world.advice import advice
@@ -106,12 +109,23 @@ def check_own_house(house: House) -> tuple[list[str], list[str]]:
     """
     compiled = _compiled(house.spec, house.rules)
     remarks = _overlaps(compiled) + _without_support(compiled) + _unstable(compiled.model)
+    remarks += _doubtful_rooms(compiled.model, compiled.rooms)
     faults = _unreachable(compiled, SuccessRule(), RobotModel())
     try:
         read_instance_facts(compiled.model, compiled.labels)
     except HouseError as error:
         faults.append(str(error).rstrip("."))
     return faults, remarks
+
+
+def _doubtful_rooms(model: mujoco.MjModel, rooms: Sequence[Room]) -> Iterator[str]:
+    """Yields a sentence for each site that looks like a room and is none, and for each kind that may be misspelt."""
+    for name in sites_without_room(model):
+        yield f"site '{name}' is no room: a room is a box site of the world body with a name such as room_bedroom_00"
+    known = sorted(set(itertools.chain.from_iterable(ROOMS.values())))
+    for room in rooms:
+        if room.kind not in known and (similar := difflib.get_close_matches(room.kind, known, n=1, cutoff=0.8)):
+            yield f"the kind of '{room.name}' may be misspelt: goals in words know '{similar[0]}'"
 
 
 def _compiled(spec: mujoco.MjSpec, rules: Mapping[str, str] | None) -> _CompiledHouse:

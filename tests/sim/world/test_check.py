@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sim.core.interface import RobotModel, SuccessRule
+from sim.gl import mujoco
 from sim.houses.house import House
 from sim.world.check import check_house, check_own_house
 from tests.helpers.worlds import room, with_box, with_facts
@@ -59,6 +60,24 @@ def test_a_users_house_with_a_wrong_text_about_an_object_has_a_fault(text: str, 
         assert faults == []
     else:
         assert f"the text of instance 'table_00' {fault}" in faults[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "remark"),
+    [
+        ("room_office_01", None),
+        ("room_store_01", None),  # a kind that no word of a goal means is allowed
+        ("room_bedrom_01", "the kind of 'room_bedrom_01' may be misspelt: goals in words know 'bedroom'"),
+        ("Room_office_01", "site 'Room_office_01' is no room: a room is a box site of the world body"),
+        ("room_office", "site 'room_office' is no room"),
+    ],
+)
+def test_a_room_of_a_users_house_with_a_doubtful_name_is_remarked(name: str, remark: str | None) -> None:
+    house = table(room(5, 4))
+    house.spec.worldbody.add_site(name=name, type=mujoco.mjtGeom.mjGEOM_BOX, size=[2.5, 2.0, 1.3], pos=[0.0, 0.0, 1.3])
+    faults, remarks = check_own_house(house)
+    assert faults == []
+    assert [text.startswith(remark or "?") for text in remarks] == ([] if remark is None else [True])
 
 
 @pytest.mark.parametrize(
