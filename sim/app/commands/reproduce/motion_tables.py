@@ -32,15 +32,8 @@ def motions(lines: Mapping[AgentSetup, Sequence[EpisodeResult]], setups: Sequenc
     """Returns the tables: means, what the first motion changes, the orders of agents, and what measures are worth."""
     rows = _by_agent(lines, setups)
     shown = [motion for motion in MOTIONS if all(motion in of for of in rows.values())]
-    columns = [(metric, motion) for metric in (SUCCESS, SPL, COLLISIONS) for motion in shown]
     tables = [
-        ResultTable(
-            "motions",
-            f"Agents by kind of motion, {setups[0].semantics} segmentation",
-            ("agent", *(f"{metric.title}: {motion}" for metric, motion in columns)),
-            [(agent, [mean_cell(metric, of[motion]) for metric, motion in columns]) for agent, of in rows.items()],
-            ("`contacts` is physics; `no-sliding` and `sliding` are the kinematic motions of Habitat.",),
-        ),
+        *(_means(rows, shown, metric, setups[0].semantics) for metric in (SUCCESS, SPL, COLLISIONS)),
         _changes(rows, shown),
         _orders(rows, shown),
     ]
@@ -61,6 +54,15 @@ def _by_agent(lines: Mapping[AgentSetup, Sequence[EpisodeResult]], setups: Seque
         motion, _, further = words.partition(" ")
         rows.setdefault(f"{agent} {further}".strip(), {})[motion or MOTIONS[0]] = lines[setup]
     return rows
+
+
+def _means(rows: Rows, shown: Sequence[str], metric: Metric, semantics: str) -> ResultTable:
+    return ResultTable(
+        f"motions_{metric.key}",
+        f"{metric.title} by kind of motion ({semantics} segmentation)",
+        ("agent", *shown),
+        [(agent, [mean_cell(metric, of[motion]) for motion in shown]) for agent, of in rows.items()],
+    )
 
 
 def _changes(rows: Rows, shown: Sequence[str]) -> ResultTable:
@@ -99,12 +101,12 @@ def _order(rows: Rows, metric: Metric, a: str, b: str) -> Cell:
     tau = _tau(values.mean(axis=-1))
     if math.isnan(tau):  # all agents are equal
         return Cell(Estimate(None, None, None, len(some), len(houses)), digits=2)
-    drawn = [_tau(_means(sums, counts, rng.integers(len(houses), size=len(houses)))) for _ in range(_DRAWS)]
+    drawn = [_tau(_drawn_means(sums, counts, rng.integers(len(houses), size=len(houses)))) for _ in range(_DRAWS)]
     low, high = np.nanquantile(drawn, (0.025, 0.975))
     return Cell(Estimate(tau, float(low), float(high), len(some), len(houses)), digits=2)
 
 
-def _means(sums: np.ndarray, counts: np.ndarray, drawn: np.ndarray) -> np.ndarray:
+def _drawn_means(sums: np.ndarray, counts: np.ndarray, drawn: np.ndarray) -> np.ndarray:
     """Returns the means (2, agents) over some houses, which may repeat."""
     return sums[..., drawn].sum(axis=-1) / counts[drawn].sum()
 

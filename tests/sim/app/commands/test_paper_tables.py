@@ -116,9 +116,10 @@ def test_motions_have_a_column_each_and_the_orders_of_agents_are_compared() -> N
     agents = ("stubborn", "stubborn-i", "oracle")
     setups = TABLES["motions"].setups((*agents, *(f"{agent} --motion sliding" for agent in agents)))
     made = TABLES["motions"].build(lines_of(setups, failed=(10, 20, 0, 5, 2, 0)), setups)
-    means, changes, orders, measures = made
-    assert [row for row, _ in means.rows] == list(agents)
-    assert means.header[1:3] == ("success %: contacts", "success %: sliding")
+    success, spl, collisions, changes, orders, measures = made
+    for means in (success, spl, collisions):
+        assert [row for row, _ in means.rows] == list(agents)
+        assert means.header == ("agent", "contacts", "sliding")
     assert cell(changes, "stubborn-i", "success %: contacts - sliding").estimate.mean == pytest.approx(-18 / 40)
     assert cell(measures, "contacts", "success %").estimate.mean == pytest.approx(10 / 40)
     order = cell(orders, "contacts, sliding", "success %").estimate
@@ -133,7 +134,7 @@ def test_motions_are_compared_without_contacts_and_with_further_options() -> Non
         agent.replace(" --config", f" --motion {motion} --config") for agent in agents[1:] for motion in MOTIONS[1:]
     ]
     setups = TABLES["motions"].setups((*(f"stubborn --motion {motion}" for motion in MOTIONS[1:]), *named))
-    means, changes, *_ = TABLES["motions"].build(lines_of(setups, failed=(5, 4, 3, 2)), setups)
+    means, _, _, changes, *_ = TABLES["motions"].build(lines_of(setups, failed=(5, 4, 3, 2)), setups)
     assert [row for row, _ in means.rows] == list(agents)
     assert cell(changes, agents[1], "success %: no-sliding - sliding").estimate.mean == pytest.approx(-1 / 40)
 
