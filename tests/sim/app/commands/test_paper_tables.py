@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from sim.app.analysis.metrics import FIRST_SIGHT, median_text
 from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.commands.reproduce.motion_tables import MOTIONS
 from sim.app.commands.reproduce.paper_tables import ABLATION, TABLES, ablation_rows, table_named
@@ -109,6 +110,11 @@ def test_explorers_are_compared_by_the_median_time_to_first_sight() -> None:
     assert isinstance(ratio, Cell)
     assert ratio.text().startswith("0.50 [0.")
     assert ratio.verdict == "lower"
+
+
+@pytest.mark.parametrize(("steps", "text"), [([10, 20, 31], "20"), ([10, 21], "15.5"), ([10, 20], "15"), ([], "-")])
+def test_a_median_between_two_whole_numbers_keeps_its_half(steps: list[int], text: str) -> None:
+    assert median_text(FIRST_SIGHT, [a_result(steps_to_first_sight=count) for count in steps]) == text
 
 
 @pytest.mark.costly
