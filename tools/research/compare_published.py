@@ -83,7 +83,7 @@ def main(args: Args) -> int:
 
 def rows_of(file: Path) -> list[list[str]]:
     """Returns the rows of a comparison in the order of `COLUMNS`."""
-    names = dict(zip(("A", "B", "B - A"), (*AGENTS, f"{AGENTS[1]} - {AGENTS[0]}"), strict=True))
+    names = {"A": AGENTS[0], "B": AGENTS[1], "B - A": f"{AGENTS[1]} - {AGENTS[0]}"}
     return [
         [row["row"], names[row["column"]], *(row[name] for name in COLUMNS[2:])]
         for row in read_csv(file, what="Comparison")
