@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from sim.core.interface import MPCAT40
 from sim.gl import mujoco
-from sim.houses.geoms import data_at_rest
+from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.labels import VOID, Labels, collidable_geoms, names_of_geom, rendered_geoms
 from sim.houses.taxonomies import category_of_ending, words_of
 
@@ -184,20 +184,16 @@ def size_doubt(category: str, size_m: NDArray[np.float64]) -> str:
 
 
 def geom_box(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns the lowest and the highest corner (3,) of the box around a geom in the world, metres."""
-    rotation = data.geom_xmat[geom].reshape(3, 3)
-    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
-        half = np.array([*np.where(model.geom_size[geom, :2] > 0.0, model.geom_size[geom, :2], 100.0), 0.0])
-        centre = np.zeros(3)
-    elif model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:  # a turned mesh does not fill its own box
-        mesh = model.geom_dataid[geom]
-        first = model.mesh_vertadr[mesh]
-        vertices_m = model.mesh_vert[first : first + model.mesh_vertnum[mesh]] @ rotation.T + data.geom_xpos[geom]
-        return vertices_m.min(axis=0).astype(np.float64), vertices_m.max(axis=0).astype(np.float64)
-    else:
-        centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
-    middle, reach = data.geom_xpos[geom] + rotation @ centre, np.abs(rotation) @ half
-    return middle - reach, middle + reach
+    """Returns the lowest and the highest corner (3,) of the box around a geom in the world, metres.
+
+    A plane is its rendered rectangle, or 200 m wide without one.
+    """
+    if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_PLANE:
+        low, high = world_boxes(model, data, [geom])
+        return low[0], high[0]
+    half = np.array([*np.where(model.geom_size[geom, :2] > 0.0, model.geom_size[geom, :2], 100.0), 0.0])
+    reach = np.abs(data.geom_xmat[geom].reshape(3, 3)) @ half
+    return data.geom_xpos[geom] - reach, data.geom_xpos[geom] + reach
 
 
 def box_around(

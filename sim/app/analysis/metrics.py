@@ -30,12 +30,9 @@ def difference_cell(metric: Metric, first: Sequence[EpisodeResult], second: Sequ
 
 
 def median_text(metric: Metric, results: Sequence[EpisodeResult]) -> str:
-    """Returns the median over results as text, a half between two whole numbers too; `-` without any number."""
+    """Returns the median over results as text, with a half between two whole numbers; `-` without any number."""
     known = [value for value in map(metric.value, results) if value is not None]
-    if not known:
-        return "-"
-    median = statistics.median(known)
-    return f"{median:.1f}" if metric.digits == 0 and median % 1.0 == 0.5 else f"{median:.{metric.digits}f}"
+    return f"{statistics.median(known):g}" if known else "-"
 
 
 def ratio_cell(metric: Metric, first: Sequence[EpisodeResult], second: Sequence[EpisodeResult]) -> Cell:

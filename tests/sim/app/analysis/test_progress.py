@@ -87,8 +87,13 @@ def test_the_time_left_follows_from_the_steps_of_ended_episodes() -> None:
     assert left_s == pytest.approx((5 * 40 + 40 - step) / rate, abs=1.0)
 
 
-def test_no_time_left_is_named_where_the_last_episode_is_longer_than_those_before() -> None:
-    running = [line for line in report(("b0", itertools.count(60).__next__), ended=4, total=5) if "running" in line]
+@pytest.mark.parametrize(
+    "steps",
+    [itertools.count(60).__next__, itertools.chain([30], itertools.repeat(39)).__next__],
+    ids=["longer", "one step shorter"],
+)
+def test_no_time_left_is_named_where_the_last_episode_is_at_the_mean_of_those_before(steps: Steps) -> None:
+    running = [line for line in report(("b0", steps), ended=4, total=5) if "running" in line]
     assert running
     assert not any("left" in line for line in running)
 
