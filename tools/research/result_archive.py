@@ -16,9 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app.analysis.comparison import Run, read_run
-from sim.app.commands.reproduce.runs import RunKey, runs_in
+from sim.app.commands.reproduce.runs import RunKey, folder_name, runs_in
 from sim.app.composition.agents import find_agent
-from sim.core.configuration import leaves_of
 from sim.core.errors import ConfigError
 from sim.core.reading import read_bytes
 from sim.episodes.replicates import episode_of
@@ -26,28 +25,42 @@ from sim.task.result import EpisodeResult
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = ROOT / "docs" / "tables"
-VERSION = "3.0.0"
+VERSION = "4.0.0"
 """Version of the splits of the tables. Results of different ones are of different houses or physics."""
+SEALED = "sealed4"
+"""The sealed split, whose version is "sealed"."""
+VERSIONS = (VERSION, "sealed")
 ARCHIVE = TABLES / f"splits-{VERSION}.tar.gz"
 RUN_FILES = ("config.json", "results.jsonl")
 GROUND_TRUTH_KINDS = ("gt", "noisy")
 """Kinds of segmentation that are made from ground truth."""
 CHECKSUM_DIGITS = 8
+_IMPORTED = {
+    "rooms": ("procthor rooms_val.jsonl.gz", 100),
+    "house": ("procthor house_train_1.json", 50),
+    "kitchen": ("robocasa kitchen/scenes/kitchen.xml --root kitchen", 50),
+    "by_rules": ("molmospaces by_rules", 50),
+}
+"""What `stubborn import` reads, and the number of episodes."""
 PREPARED = {
     "transfer": (
         "stubborn import furniture --source /usr/share/sweethome3d/furniture --out runs/models",
         "stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer",
         "stubborn episodes --split runs/transfer --recipe val",
-    )
+    ),
+    SEALED: (
+        "stubborn seal reveal leaderboard/sealed4.sealed.json --announced leaderboard/sealed4.announced.json "
+        "--repository . --out runs/sealed4",
+    ),
+    **{
+        name: (
+            f"stubborn import {source} --out runs/{name}",
+            f"stubborn episodes --split runs/{name} --recipe val --episodes {episodes}",
+        )
+        for name, (source, episodes) in _IMPORTED.items()
+    },
 }
-"""Commands that make the splits that do not ship (docs/furniture.md)."""
-FORMER = {
-    "agent.untrap.turns_reset": ("agent.untrap.failed_forwards", "false"),
-    "agent.mapping.other_of_target_pixel": ("agent.mapping.candidate_score", "true"),
-    "agent.seeker.context_share": ("agent.seeker.core_share", "0"),
-}
-"""Fields that `config.json` of older runs lacks: an older field of the same part of the agent, and the value that gives
-the behaviour of that time."""
+"""Commands that make the splits that do not ship (docs/furniture.md, leaderboard.md, worlds.md)."""
 
 
 @dataclass(frozen=True)
@@ -93,21 +106,20 @@ class ArchivedRun:
         return str(self.run.config.get("files_sha256", {}).get("weights", ""))[:CHECKSUM_DIGITS]
 
     def command(self, episodes: int) -> str:
-        """Returns the commands, with semicolons between, that run the same episodes."""
-        source = self.run.recorded("split")
-        setup = self.key.setup
+        """Returns the commands, with semicolons between, that run the same episodes.
+
+        A run with a network that did not average with the mirror image says so, because others are the default on some
+        processors.
+        """
+        setup, split = self.key.setup, self.key.split
         options = shlex.split(setup.options)
-        if former := self._former_settings():
-            options += former if "--config" in options else ["--config", *former]
+        detector = self.run.config.get("config", {}).get("detector") or {}
+        if detector.get("mirrored") is False:
+            options += [*([] if "--config" in options else ["--config"]), "detector.mirrored=false"]
+        source = f"runs/{split}" if split in PREPARED else self.run.recorded("split")
         words = ["stubborn", "run", "--agent", setup.agent, *options, "--semantics", setup.semantics]
         run = shlex.join([*words, "--split", source, "--episodes", str(episodes)])
-        return "; ".join([*PREPARED.get(self.key.split, ()), run])
-
-    def _former_settings(self) -> list[str]:
-        """Returns the settings of `FORMER` that this run needs."""
-        recorded = dict(leaves_of(self.run.config.get("config", {})))
-        missing = {path: value for path, (older, value) in FORMER.items() if older in recorded and path not in recorded}
-        return [f"{path}={value}" for path, value in missing.items()]
+        return "; ".join([*PREPARED.get(split, ()), run])
 
 
 def read_archive(archive: Path, folder: Path) -> dict[RunKey, ArchivedRun]:
@@ -125,12 +137,12 @@ def read_archive(archive: Path, folder: Path) -> dict[RunKey, ArchivedRun]:
             opened.extractall(folder, filter="data")
     except (OSError, tarfile.TarError, EOFError) as error:
         raise ConfigError(f"Archive '{archive}' cannot be read: {error}.") from None
-    return {key: ArchivedRun(key, read_run(path)) for key, path in runs_in(folder, VERSION).items()}
+    return {key: ArchivedRun(key, read_run(path)) for key, path in runs_in(folder, *VERSIONS).items()}
 
 
 def unpack(archive: Path, out: Path) -> None:
     """Copies the runs of an archive to a folder that has fewer episodes of them."""
-    present = runs_in(out, VERSION)
+    present = runs_in(out, *VERSIONS)
     with tempfile.TemporaryDirectory() as folder:
         for key, run in read_archive(archive, Path(folder)).items():
             target = present.get(key, out / run.run.path.name)
@@ -139,13 +151,16 @@ def unpack(archive: Path, out: Path) -> None:
 
 
 def pack(folders: Mapping[RunKey, Path]) -> bytes:
-    """Returns a tar.gz file with the files of runs; the same runs give the same bytes."""
+    """Returns a tar.gz file with the files of runs, in folders named as by `stubborn reproduce`.
+
+    The same runs give the same bytes.
+    """
     plain = io.BytesIO()
     with tarfile.open(fileobj=plain, mode="w") as archive:
-        for folder in sorted(folders.values()):
+        for target, folder in sorted((folder_name(key.setup, key.split), folder) for key, folder in folders.items()):
             for name in RUN_FILES:
                 content = read_bytes(folder / name, what="Run")
-                member = tarfile.TarInfo(f"{folder.name}/{name}")
+                member = tarfile.TarInfo(f"{target}/{name}")
                 member.size = len(content)
                 archive.addfile(member, io.BytesIO(content))
     return gzip.compress(plain.getvalue(), mtime=0)

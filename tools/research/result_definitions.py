@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from sim.app.analysis.metrics import COLLISIONS, EXPLORED, FIRST_SIGHT, SPL, STEPS, SUCCESS, TRAPPED
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey
 from sim.task.result import METRICS, Metric
-from tools.research.result_archive import VERSION
+from tools.research.result_archive import SEALED, VERSION
 
 MEANS = (SUCCESS, SPL, METRICS["soft_spl"], METRICS["distance_to_goal"], EXPLORED, COLLISIONS, TRAPPED, STEPS)
 """Metrics whose mean and interval each row of results.csv has."""
@@ -39,7 +39,8 @@ class RowKey:
     def of(cls, split: str, episodes: int, name: str, semantics: str = "gt") -> RowKey:
         """Returns the row of an agent with options, such as "stubborn --explorer tour"."""
         agent, _, options = name.partition(" ")
-        return cls(RunKey(split, AgentSetup(agent, options, semantics), VERSION), episodes)
+        version = "sealed" if split == SEALED else VERSION
+        return cls(RunKey(split, AgentSetup(agent, options, semantics), version), episodes)
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class PageTable:
-    """A table of the page: labels, then cells, each a column of a row of results.csv."""
+    """A table of results.md: labels, then cells, each a column of a row of results.csv."""
 
     name: str
     header: tuple[str, ...]
@@ -63,31 +64,28 @@ class PageTable:
 
 
 EPISODES = {
-    "headline": {"val": 200, "large": 100, "hazards": 200, "transfer": 100, "contact-val": 150, "contact-heldout": 60},
-    "further": {"large": 100, "hazards": 100, "test": 500},
-    "ablation": {"val": 200, "hazards": 200},
-    "explorers": {"val": 200, "large": 100},
-    "semexp": {"val": 200},
-    "network": {"val": 200, "transfer": 100},
+    "headline": {"val": 100, "test": 500, SEALED: 200},
+    "further": {"large": 50, "hazards": 50, "transfer": 100, "contact-heldout": 60},
+    "ablation": {"val": 100, "hazards": 50},
+    "explorers": {"val": 100},
+    "explorers-large": {"large": 50},
+    "semexp": {"val": 100},
+    "network": {"val": 100, "transfer": 100},
+    "earlier": {"val": 200, "large": 100, "hazards": 100},
     "drift": {"val": 30},
 }
 """The first episodes of each split that a table has."""
+_FIVE = ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet")
 AGENTS: Mapping[str, Mapping[str, Sequence[str]]] = {
-    "headline": {
-        "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
-        "large": ("oracle gt", "stubborn gt"),
-        "hazards": ("stubborn gt", "stubborn-plus gt"),
-        "transfer": ("stubborn-plus rednet",),
-        "contact-val": ("stubborn-plus gt",),
-        "contact-heldout": ("stubborn gt", "stubborn-plus gt"),
-    },
+    "headline": {"val": _FIVE, "test": _FIVE, SEALED: _FIVE},
     "further": {
-        "large": ("stubborn rednet", "stubborn-plus rednet"),
-        "hazards": ("stubborn rednet", "stubborn-plus rednet"),
-        "test": ("stubborn-plus rednet",),
+        "large": _FIVE,
+        "hazards": _FIVE[1:],
+        "transfer": _FIVE[3:],
+        "contact-heldout": _FIVE[1:3],
     },
 }
-"""Agents and segmentation by split; `further` has harder splits and, for the last measurement, `test`."""
+"""Agents and segmentation by split; `further` has harder splits."""
 ABLATION = {
     "stubborn-i": "I: none",
     "stubborn-ii": "II: untrap moves",
@@ -101,10 +99,13 @@ EXPLORERS = {
     "frontier": "`frontier`",
     "stubborn --explorer informed-tour": "`informed-tour`",
     "poni": "`poni`",
+    "semexp": "`semexp`",
     "cloned": "`cloned`",
     "random": "`random`",
     "oracle": "`oracle`",
 }
+_ON_LARGE = ("stubborn", "frontier-avoid", "stubborn --explorer informed-tour", "poni", "oracle")
+LARGE_EXPLORERS = {name: EXPLORERS[name] for name in _ON_LARGE}
 PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni")
 """Explorers whose comparison with corners is primary."""
 SEMEXP = {
@@ -112,15 +113,21 @@ SEMEXP = {
     "semexp": "`semexp`",
     "semexp --config agent.explorer.goal=wrong": "`semexp`, wrong goal",
     "semexp --config agent.explorer.semantics=shuffled": "`semexp`, shuffled semantics",
+    "semexp --config agent.explorer.semantics=none": "`semexp`, no semantics",
 }
-"""The last two are controls: they show whether `semexp` uses the goal and the semantics, and are compared with it."""
+"""The last three are controls: they show whether `semexp` uses the goal and the semantics, and are compared with it."""
 NETWORK: Mapping[str, Mapping[str, str]] = {
     "val": {"stubborn": "naive Bayes", "stubborn --verification none": "none", "stubborn-plus": "tracks"},
     "transfer": {"stubborn": "naive Bayes", "stubborn-plus": "tracks"},
 }
 """Verification by split and agent with options."""
-DRIFT = ("stubborn --noise realsense", "stubborn --noise realsense --config noise.pose.from_odometry=false")
+DRIFT = {
+    "stubborn --noise realsense": "odometry",
+    "stubborn --noise realsense --config noise.pose.from_odometry=false": "true pose",
+}
 """Runs with gps and compass by odometry, and with the true pose."""
+EARLIER = {"stubborn-plus": "shipped", "stubborn-plus --weights old300.safetensors": "of version 3.0.0"}
+"""The shipped network, and the one that was not trained in homes of version 4.0.0."""
 
 
 def page_tables() -> tuple[PageTable, ...]:
@@ -132,22 +139,16 @@ def page_tables() -> tuple[PageTable, ...]:
             "measures", "val: success %", "hazards: success %", "hazards: trapped %", "hazards: collisions",
         ),
         _table(
-            "explorers", EXPLORERS, {"val": (SUCCESS, SPL), "large": (SUCCESS, SPL, MEDIAN)},
-            "explorer", "val: success %", "val: SPL", "large: success %", "large: SPL", "large: first sight",
+            "explorers", EXPLORERS, {"val": (SUCCESS, SPL, MEDIAN)}, "explorer", "success %", "SPL", "first sight"
+        ),
+        _table(
+            "explorers-large", LARGE_EXPLORERS, {"large": (SUCCESS, SPL, MEDIAN)},
+            "explorer", "success %", "SPL", "first sight",
         ),
         _table("semexp", SEMEXP, {"val": (SUCCESS, SPL, MEDIAN)}, "explorer", "success %", "SPL", "first sight"),
-        PageTable(
-            "network",
-            ("split, episodes", "agent", "verification", "success %", "SPL", "false detections"),
-            tuple(
-                (
-                    (f"{split}, {row.episodes}", f"`{row.run.setup.agent}`", NETWORK[split][name]),
-                    _cells(row, (SUCCESS, SPL, FALSE_DETECTIONS)),
-                )
-                for split, names in NETWORK.items()
-                for name, row in _rows("network", split, names, "rednet").items()
-            ),
-        ),
+        _table("drift", DRIFT, {"val": (SUCCESS, SPL)}, "`gps`, `compass`", "success %", "SPL"),
+        _networks("network", NETWORK, "verification", (SUCCESS, SPL, FALSE_DETECTIONS)),
+        _networks("earlier", dict.fromkeys(EPISODES["earlier"], EARLIER), "network", (SUCCESS, SPL)),
     )  # fmt: skip
 
 
@@ -162,16 +163,19 @@ def comparisons() -> Iterator[Comparison]:
     for split in EPISODES["ablation"]:
         *rows, whole = _rows("ablation", split, ABLATION).values()
         yield from (Comparison("ablation", row, whole) for row in rows)
-    for split in EPISODES["explorers"]:
-        for name, row in list(_rows("explorers", split, EXPLORERS).items())[1:]:
-            corners = RowKey.of(split, row.episodes, "stubborn")
-            yield Comparison("explorers", row, corners, name in PRIMARY_EXPLORERS)
+    for table, split, names in (("explorers", "val", EXPLORERS), ("explorers-large", "large", LARGE_EXPLORERS)):
+        corners, *others = _rows(table, split, names).items()
+        for name, row in others:
+            yield Comparison(table, row, corners[1], name in PRIMARY_EXPLORERS)
     corners, semexp, *controls = _rows("semexp", "val", SEMEXP).values()
     for first, second in ((semexp, corners), *((control, semexp) for control in controls)):
         yield Comparison("semexp", first, second)
     for split, names in NETWORK.items():
         second, *others = _rows("network", split, names, "rednet").values()
-        yield from (Comparison("network", first, second) for first in others)
+        for first in others:  # those between the two agents are primary in other tables
+            yield Comparison("network", first, second, first.run.setup.agent == second.run.setup.agent)
+    for split in EPISODES["earlier"]:
+        yield Comparison("earlier", *_rows("earlier", split, EARLIER, "rednet").values())
     first, second = _rows("drift", "val", DRIFT).values()
     yield Comparison("drift", first, second)
 
@@ -189,11 +193,28 @@ def _rows(table: str, split: str, names: Iterable[str], semantics: str = "gt") -
 def _agents(table: str) -> PageTable:
     rows = []
     for split, agent in ((split, agent) for split, names in AGENTS[table].items() for agent in names):
-        name, semantics = agent.split()
-        row = RowKey.of(split, EPISODES[table][split], name, semantics)
-        shown = "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
-        rows.append(((f"{split}, {row.episodes}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
+        row = RowKey.of(split, EPISODES[table][split], *agent.split())
+        rows.append(((f"{split}, {row.episodes}", *_agent(agent)), _cells(row, (SUCCESS, SPL))))
     return PageTable(table, ("split, episodes", "agent", "segmentation", "success %", "SPL"), tuple(rows))
+
+
+def _agent(text: str) -> tuple[str, str]:
+    """Returns the labels of an agent and its segmentation."""
+    name, semantics = text.split()
+    return f"`{name}`", "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
+
+
+def _networks(
+    table: str, names: Mapping[str, Mapping[str, str]], label: str, columns: Sequence[Metric | str]
+) -> PageTable:
+    """Returns a table of rows with the network, whose labels are split, agent and another."""
+    rows = [
+        ((f"{split}, {row.episodes}", f"`{row.run.setup.agent}`", of_split[name]), _cells(row, columns))
+        for split, of_split in names.items()
+        for name, row in _rows(table, split, of_split, "rednet").items()
+    ]
+    titles = (column.title if isinstance(column, Metric) else "false detections" for column in columns)
+    return PageTable(table, ("split, episodes", "agent", label, *titles), tuple(rows))
 
 
 def _table(

@@ -1,4 +1,4 @@
-"""Makes `docs/tables/*.csv`, paper.md and the tables of docs/results.md, from the archive of result lines.
+"""Makes `docs/tables/*.csv`, paper.md and the tables of some pages of docs, from the archive of result lines.
 
     python -m tools.research.result_tables            # writes them
     python -m tools.research.result_tables --check    # exit status 1 where a file differs from what it would write
@@ -11,9 +11,10 @@ between 0 and 1; `_low` and `_high` are the 95 % interval (`sim.app.evaluation.i
 column `family` names the primary comparisons of a table: `success_p_holm` and `spl_p_holm` are their p-values,
 corrected by Holm's method for all primary comparisons of the table in both metrics. All others are exploratory, and
 nothing is corrected for their number. `_replicates_sd` is the standard deviation that chance alone gives the mean over
-one replicate of each episode (`stubborn run --replicates`). The page's tables stand between `<!-- table: NAME -->` and
-`<!-- end -->`; its sentences may quote only quantities with an interval, such as `94.0 [89.1, 98.0]`, that are in the
-two files.
+one replicate of each episode (`stubborn run --replicates`). The tables of results.md and motions.md
+stand between `<!-- table: NAME -->` and `<!-- end -->`. The sentences of these pages may quote only
+quantities with an interval, such as `94.0 [89.1, 98.0]`, that are in the CSV files, paper.md or the tables of
+motions, also with the opposite sign.
 
 With --run, the folder --out receives the runs of the archive first, so that another machine continues where one
 stopped. The archive then holds all runs of --out that are of its version of the splits.
@@ -25,7 +26,7 @@ import re
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -40,17 +41,27 @@ from sim.app.commands.reproduce.paper_claims import MARGIN, JudgedTable, judged,
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
 from sim.app.commands.reproduce.reproduce import Args as ReproduceArgs
 from sim.app.commands.reproduce.reproduce import lines_of, make_table, part_of, shared_runs
-from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, run_in_turns, runs_in
+from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, folder_name, run_in_turns, runs_in
 from sim.app.evaluation.intervals import Estimate, holm, replicate_spread
 from sim.core.errors import ConfigError
-from sim.core.files import csv_text, file_name, write_atomically, write_together
+from sim.core.files import csv_text, write_atomically, write_together
 from sim.core.reading import read_bytes, read_text
 from sim.core.reading import read_csv as read_table
 from sim.episodes.splits import load_split
 from sim.task.failures import CAUSES
 from sim.task.result import EpisodeResult, Metric
 from tools.research.paper_reasons import reasons
-from tools.research.result_archive import ARCHIVE, ROOT, TABLES, VERSION, ArchivedRun, pack, read_archive, unpack
+from tools.research.result_archive import (
+    ARCHIVE,
+    ROOT,
+    TABLES,
+    VERSION,
+    VERSIONS,
+    ArchivedRun,
+    pack,
+    read_archive,
+    unpack,
+)
 from tools.research.result_definitions import (
     COMPARED,
     FAILED,
@@ -67,14 +78,23 @@ from tools.research.result_definitions import (
 
 Record = dict[str, str]
 """One row of a CSV file, by column."""
-PAGE = ROOT / "docs" / "results.md"
-RESULTS, COMPARISONS, PAPER = "results.csv", "comparisons.csv", "paper.md"
-QUANTITY = re.compile(r"([-+]?\d[\d.]*)(?: (?:points|steps|%|of SPL))? (\[[-+]?\d[\d.]*, [-+]?\d[\d.]*\])")
-"""A number with an interval in a sentence of the page."""
+DOCS = ROOT / "docs"
+PAGES = ("results.md", "motions.md")
+"""Pages with tables."""
+RESULTS, COMPARISONS, PAPER, PUBLISHED = "results.csv", "comparisons.csv", "paper.md", "published_code.csv"
+QUANTITY = re.compile(r"([-+]?\d[\d.]*)(?: (?:points|steps|%|of SPL|of success))? \[([-+]?\d[\d.]*), ([-+]?\d[\d.]*)\]")
+"""A number with an interval in a sentence or table of a page."""
+Quantity = tuple[str, str, str]
+"""A mean and the ends of its interval, as they are written without a plus sign."""
+INTERVAL = ("value", "low95", "high95")
+"""Columns of published_code.csv."""
+SPLIT_HASH = re.compile(r" \([0-9a-f]{8}\)")
 CHUNK = 50
 """Episodes of a row before the next row's turn."""
-PAPER_EPISODES = 200
+PAPER_EPISODES = 100
 """The first episodes of val, as far as all runs of a table of the paper have them."""
+MOTION_EPISODES = {"val": 50}
+"""The first episodes of the splits that motions.md shows, as far as all agents have them with each motion."""
 ABOUT_PAPER = f"""\
 # The paper's tables
 
@@ -83,9 +103,8 @@ generated houses (splits {VERSION}) with contacts. Compare orders and difference
 ground-truth segmentation, `rednet` the network that shipped with these splits. `cloned`, a small end-to-end agent,
 corresponds to the paper's EEAux and is not that agent.
 
-`stubborn reproduce all --episodes 200 --workers 2` makes the same tables with the present splits and network, and
-resumes; each table states its hours. This page is made from the [result lines]({ARCHIVE.name}) by
-`python -m tools.research.result_tables`.
+`stubborn reproduce all --episodes {PAPER_EPISODES} --workers 2` makes the same tables, and resumes; each table states
+its hours. This page is made from the [result lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
 
 ## Verdicts
 
@@ -125,8 +144,8 @@ class Args:
     """Archive of result lines."""
     tables: Path = TABLES
     """Folder of the CSV files."""
-    page: Path = PAGE
-    """The page with the tables."""
+    docs: Path = DOCS
+    """Folder of the pages."""
 
 
 def main(args: Args) -> int:
@@ -144,31 +163,37 @@ def main(args: Args) -> int:
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(pair, runs) for pair in pairs])
         paper = paper_page(Path(folder), runs)
-    page = fill_page(read_text(args.page, what="--page"), results)
+        motions = motion_texts(Path(folder))
+    filled = {
+        args.docs / name: fill_page(read_text(args.docs / name, what="Page"), texts)
+        for name, texts in tables_by_page(results, motions).items()
+    }
     contents = {
         args.tables / RESULTS: to_csv(results),
         args.tables / COMPARISONS: to_csv(compared),
         args.tables / PAPER: paper,
-        args.page: page,
+        **filled,
     }
-    unknown = unknown_quantities(page, results, compared)
-    for text in unknown:
-        say(f"'{args.page}' quotes {text}, which is in no row of {RESULTS} or {COMPARISONS}.")
+    known = known_quantities(results, compared, read_csv(args.tables / PUBLISHED), [*motions.values(), paper])
+    unknown = {page: unknown_quantities(text, known) for page, text in filled.items()}
+    for page, text in ((page, text) for page, texts in unknown.items() for text in texts):
+        say(f"'{page}' quotes {text}, which is in no CSV file and no table.")
     differing = [file for file, text in contents.items() if not file.is_file() or _text(file) != text]
+    is_unknown = any(unknown.values())
     if args.check:
         for file in differing:
             say(f"'{file}' differs from the archive; `python -m tools.research.result_tables` writes it.")
-        return int(bool(differing or unknown))
+        return int(bool(differing) or is_unknown)
     write_together(dict(contents))
     say(f"{len(results)} rows in {args.tables / RESULTS}, {len(compared)} in {args.tables / COMPARISONS}.")
-    return int(bool(unknown))
+    return int(is_unknown)
 
 
 def run_missing_rows(args: Args, console: Console) -> int:
     """Runs the episodes that the tables lack and writes the archive; returns the exit status."""
     if args.archive.is_file():
         unpack(args.archive, args.out)
-    folders = runs_in(args.out, VERSION)
+    folders = runs_in(args.out, *VERSIONS)
     most: dict[RunKey, int] = {}
     for row in sorted(needed_rows(), key=lambda row: row.run.split):
         if row.run.split in args.splits:
@@ -176,7 +201,7 @@ def run_missing_rows(args: Args, console: Console) -> int:
     runs = {key: table_run(args, key, episodes, folders) for key, episodes in most.items()}
     if args.minutes != 0.0:
         run_in_turns(list(runs.values()), CHUNK, args.minutes, console)
-    folders = runs_in(args.out, VERSION)
+    folders = runs_in(args.out, *VERSIONS)
     write_atomically(args.archive, pack(folders))
     for key, run in runs.items():
         if len(run.results) < len(run.episodes):
@@ -195,10 +220,9 @@ def table_run(args: Args, key: RunKey, episodes: int, folders: Mapping[RunKey, P
     split, setup = load_split(key.split), key.setup
     if split.version != VERSION:
         raise ConfigError(f"'{key.split}' has version {split.version}, the tables {VERSION} (result_archive.py).")
-    name = "_".join(filter(None, (file_name(setup.agent), setup.semantics, key.split, setup.variant)))
     options = replace(
         setup.run_options(), split=key.split, episodes=episodes, workers=args.workers,
-        out=folders.get(key, args.out / name), keep_results=True,
+        out=folders.get(key, args.out / folder_name(setup, key.split)), keep_results=True,
     )  # fmt: skip
     return TableRun(options, split, split.episodes[:episodes])
 
@@ -214,9 +238,6 @@ def paper_page(folder: Path, runs: Mapping[RunKey, ArchivedRun]) -> str:
         ConfigError: a run is missing.
     """
     part = part_of(ReproduceArgs(table="all", episodes=PAPER_EPISODES, minutes=0.0, out=folder))
-    measured = next(run.run.recorded("split_identity") for key, run in runs.items() if key.split == part.split.name)
-    split = replace(part.split, version=VERSION, sha256=measured["sha256"])  # the shipped one may be newer
-    part = replace(part, split=split)
     pages: list[str] = []
     claims: list[JudgedTable] = []
     for name in PAPER_TABLES:
@@ -228,6 +249,24 @@ def paper_page(folder: Path, runs: Mapping[RunKey, ArchivedRun]) -> str:
         claims += filter(None, [judged(name, lines_of(*shared_runs(part, setups)))])
     why = f"{ABOUT_REASONS}{to_markdown(reasons(runs))}\n## Tables\n\n"
     return f"{ABOUT_PAPER}{overview(claims)}\n{why}" + "\n".join(pages)
+
+
+def motion_texts(folder: Path) -> dict[str, str]:
+    """Returns the tables of each split of motions.md, made from the unpacked archive in a folder.
+
+    Raises:
+        ConfigError: a run is missing.
+    """
+    texts = {}
+    for split, episodes in MOTION_EPISODES.items():
+        part = part_of(
+            ReproduceArgs(table="motions", split=split, episodes=episodes, semantics="gt", minutes=0.0, out=folder)
+        )
+        text = make_table(part, "motions", table_named("motions").setups((), "gt"), Console(quiet=True))
+        if text is None:
+            raise ConfigError(f"'{ARCHIVE.name}' lacks a run of the tables of motions on {split}.")
+        texts[f"motions-{split}"] = SPLIT_HASH.sub("", text)  # it reads like a commit
+    return texts
 
 
 def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
@@ -319,24 +358,32 @@ def with_families(pairs: Sequence[Comparison], records: Sequence[Record]) -> lis
     return classified
 
 
-def fill_page(text: str, results: Sequence[Record]) -> str:
-    """Returns the page with its tables made from rows of results.csv.
-
-    Raises:
-        ConfigError: the page lacks the marks of a table.
-    """
+def tables_by_page(results: Sequence[Record], motions: Mapping[str, str]) -> dict[str, Mapping[str, str]]:
+    """Returns for each page its tables as Markdown by name."""
     rows = {(*(record[name] for name in _identity_names()), record["episodes"]): record for record in results}
 
     def record_of(key: RowKey) -> Record:
         return rows[(*_identity(key.run).values(), str(key.episodes))]
 
-    for table in page_tables():
-        marks = re.compile(rf"(<!-- table: {table.name} -->\n).*?(<!-- end -->)", re.DOTALL)
-        if len(marks.findall(text)) != 1:
-            raise ConfigError(f"The page needs one '<!-- table: {table.name} -->' with an '<!-- end -->' after it.")
-        shown = table_text(table, record_of)
-        text = marks.sub(lambda match, shown=shown: f"{match[1]}\n{shown}\n{match[2]}", text)
-    return text
+    return {"results.md": {t.name: table_text(t, record_of) for t in page_tables()}, "motions.md": motions}
+
+
+def fill_page(page: str, texts: Mapping[str, str]) -> str:
+    """Returns a page with its tables.
+
+    Args:
+        page: the page.
+        texts: its tables as Markdown by name.
+
+    Raises:
+        ConfigError: the page lacks the marks of a table.
+    """
+    for name, shown in texts.items():
+        marks = re.compile(rf"(<!-- table: {name} -->\n).*?(<!-- end -->)", re.DOTALL)
+        if len(marks.findall(page)) != 1:
+            raise ConfigError(f"The page needs one '<!-- table: {name} -->' with an '<!-- end -->' after it.")
+        page = marks.sub(lambda match, shown=shown: f"{match[1]}\n{shown}\n{match[2]}", page)
+    return page
 
 
 def table_text(table: PageTable, record_of: Callable[[RowKey], Record]) -> str:
@@ -361,13 +408,40 @@ def cell_text(record: Record, column: Metric | str, *, sign: str = "") -> str:
     return f"{mean} [{low}, {high}]"
 
 
-def unknown_quantities(page: str, results: Iterable[Record], compared: Iterable[Record]) -> list[str]:
-    """Returns the quantities with an interval that the page quotes and no row of the CSV files has."""
-    known = {cell_text(record, metric) for record in results for metric in MEANS}
-    for record in compared:
-        known |= {cell_text(record, metric, sign=sign) for metric in COMPARED for sign in ("", "+")}
-    quoted = {f"{match[1]} {match[2]}" for match in QUANTITY.finditer(" ".join(page.split()))}
-    return sorted(quoted - known)
+def known_quantities(
+    results: Iterable[Record], compared: Iterable[Record], published: Iterable[Record], tables: Iterable[str]
+) -> set[Quantity]:
+    """Returns the quantities with an interval that a page may quote; those of differences also with the opposite sign.
+
+    Args:
+        results: rows of results.csv.
+        compared: rows of comparisons.csv.
+        published: rows of published_code.csv.
+        tables: texts with other tables that were made, such as those of motions.
+    """
+    cells = [cell_text(record, metric) for record in results for metric in MEANS]
+    cells += [cell_text(record, metric) for record in compared for metric in COMPARED]
+    cells += tables
+    for record in published:
+        numbers = [(100.0 if "%" in record["metric"] else 1.0) * float(record[end]) for end in INTERVAL if record[end]]
+        if len(numbers) == len(INTERVAL):
+            cells += [f"{numbers[0]:.{d}f} [{numbers[1]:.{d}f}, {numbers[2]:.{d}f}]" for d in (1, 3)]
+    known = _quantities(" ".join(cells))
+    return known | {tuple(_opposite(known_one[i]) for i in (0, 2, 1)) for known_one in known}
+
+
+def unknown_quantities(page: str, known: Container[Quantity]) -> list[str]:
+    """Returns the quantities with an interval that a page quotes and that are not known."""
+    quoted = _quantities(" ".join(page.split()))
+    return sorted(f"{mean} [{low}, {high}]" for mean, low, high in quoted if (mean, low, high) not in known)
+
+
+def _quantities(text: str) -> set[Quantity]:
+    return {tuple(number.removeprefix("+") for number in match.groups()) for match in QUANTITY.finditer(text)}
+
+
+def _opposite(number: str) -> str:
+    return number[1:] if number.startswith("-") else f"-{number}"
 
 
 def to_csv(records: Sequence[Record]) -> str:

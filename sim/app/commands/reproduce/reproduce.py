@@ -40,7 +40,7 @@ from sim.app.analysis.tables import SIGNIFICANCE, ResultTable, to_csv, to_markdo
 from sim.app.commands.reproduce.paper_claims import judged
 from sim.app.commands.reproduce.paper_figures import beside_paper
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
-from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, key_of, run_in_turns
+from sim.app.commands.reproduce.runs import MAX_NAME, AgentSetup, RunKey, TableRun, folder_name, key_of, run_in_turns
 from sim.app.composition.setup import RunConfig, resolve
 from sim.app.evaluation.config_fields import differing_fields, field_text
 from sim.app.evaluation.intervals import MIN_PAIRS
@@ -55,9 +55,6 @@ from sim.task.failures import cause_of_failure
 from sim.task.result import EpisodeResult
 from sim.task.trajectory import read_trajectory, trajectory_file
 
-MAX_NAME = 120
-"""Largest number of characters of the agents in the name of a table's file, and of options in that of a run's folder;
-longer ones get a checksum."""
 SAME_IN_ALL = ("profile", "robot")
 """Entries of config.json in which the runs of a table must be equal, if both have them."""
 
@@ -309,18 +306,7 @@ def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
 
 
 def _folder(args: Args, setup: AgentSetup) -> Path:
-    variant = setup.variant
-    if len(variant) > MAX_NAME:
-        variant = f"options-{zlib.crc32(variant.encode()):08x}"
-    parts = (
-        file_name(setup.agent),
-        file_name(setup.semantics),
-        args.noise,
-        _split_name(args),
-        _seed_name(args),
-        variant,
-    )
-    return args.out / "_".join(filter(None, parts))
+    return args.out / folder_name(setup, _split_name(args), args.noise, args.seed)
 
 
 def _split_name(args: Args) -> str:

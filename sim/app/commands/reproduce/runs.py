@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import shlex
 import time
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,6 +33,10 @@ FORM = "AGENT [--semantics SOURCE] [--explorer NAME] [--verification METHOD] [--
 """The text that `AgentSetup.named` takes."""
 NAMES = ("explorer", "verification", "noise", "seed", "replicates", "motion", "weights")
 """Options of `stubborn run` with one value that make another row of a table, in the order of its name."""
+
+MAX_NAME = 120
+"""Largest number of characters of the agents in the name of a table's file, and of options in that of a run's folder;
+longer ones get a checksum."""
 
 
 def uses_segmentation(agent: str) -> bool:
@@ -170,6 +175,15 @@ def key_of(run: Run) -> RunKey:
         values["weights"] = Path(recorded.weights).name  # the same row on another machine
     options = _options_text(values, recorded.settings)
     return RunKey(str(split["name"]), AgentSetup(agent, options, semantics), str(split["version"]))
+
+
+def folder_name(setup: AgentSetup, split: str, noise: str = "none", seed: int = 0) -> str:
+    """Returns the name of the folder of a run."""
+    variant = setup.variant
+    if len(variant) > MAX_NAME:
+        variant = f"options-{zlib.crc32(variant.encode()):08x}"
+    parts = (file_name(setup.agent), file_name(setup.semantics), noise, split, f"seed{seed}" if seed else "", variant)
+    return "_".join(filter(None, parts))
 
 
 def runs_in(out: Path, *versions: str) -> dict[RunKey, Path]:

@@ -225,7 +225,7 @@ def test_runs_of_one_agent_with_other_options_have_folders_of_their_own(args: re
 def test_many_options_get_a_checksum_in_the_name_of_the_folder(
     args: reproduce.Args, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(reproduce, "MAX_NAME", 10)
+    monkeypatch.setattr(table_runs, "MAX_NAME", 10)
     options = "examples.my_agent:AGENT --config agent.keep_m=0.8"
     assert reproduce.main(replace(args, episodes=1, agents=("oracle", options))) == 0
     assert list(args.out.glob("examples.my_agent_AGENT_gt_none_tiny_options-????????/results.jsonl"))
