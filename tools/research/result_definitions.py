@@ -175,7 +175,8 @@ def comparisons() -> Iterator[Comparison]:
         for first in others:  # those between the two agents are primary in other tables
             yield Comparison("network", first, second, first.run.setup.agent == second.run.setup.agent)
     for split in EPISODES["earlier"]:
-        yield Comparison("earlier", *_rows("earlier", split, EARLIER, "rednet").values())
+        first, second = _rows("earlier", split, EARLIER, "rednet").values()
+        yield Comparison("earlier", first, second)
     first, second = _rows("drift", "val", DRIFT).values()
     yield Comparison("drift", first, second)
 

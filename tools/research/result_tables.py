@@ -427,7 +427,7 @@ def known_quantities(
         if len(numbers) == len(INTERVAL):
             cells += [f"{numbers[0]:.{d}f} [{numbers[1]:.{d}f}, {numbers[2]:.{d}f}]" for d in (1, 3)]
     known = _quantities(" ".join(cells))
-    return known | {tuple(_opposite(known_one[i]) for i in (0, 2, 1)) for known_one in known}
+    return known | {(_opposite(mean), _opposite(high), _opposite(low)) for mean, low, high in known}
 
 
 def unknown_quantities(page: str, known: Container[Quantity]) -> list[str]:
@@ -437,7 +437,8 @@ def unknown_quantities(page: str, known: Container[Quantity]) -> list[str]:
 
 
 def _quantities(text: str) -> set[Quantity]:
-    return {tuple(number.removeprefix("+") for number in match.groups()) for match in QUANTITY.finditer(text)}
+    found = ((match[i].removeprefix("+") for i in (1, 2, 3)) for match in QUANTITY.finditer(text))
+    return {(mean, low, high) for mean, low, high in found}
 
 
 def _opposite(number: str) -> str:
