@@ -1,4 +1,4 @@
-"""The tables of docs/results.md: which runs each one shows, and which runs are compared.
+"""The tables of docs/results.md and worlds.md: which runs each one shows, and which runs are compared.
 
 A table shows only rows of `docs/tables/results.csv`, and all rows of one split in a table are of the same episodes.
 """
@@ -56,13 +56,19 @@ class Comparison:
 
 @dataclass(frozen=True)
 class PageTable:
-    """A table of results.md: labels, then cells, each a column of a row of results.csv."""
+    """A table of a page: labels, then cells, each a column of a row of results.csv."""
 
     name: str
     header: tuple[str, ...]
     rows: tuple[tuple[tuple[str, ...], tuple[tuple[RowKey, Metric | str], ...]], ...]
 
+    @property
+    def page(self) -> str:
+        """The page in docs."""
+        return _PAGES.get(self.name, "results.md")
 
+
+_PAGES = {"worlds": "worlds.md"}
 EPISODES = {
     "headline": {"val": 100, "test": 500, SEALED: 200},
     "further": {"large": 50, "hazards": 50, "transfer": 100, "contact-heldout": 60},
@@ -73,6 +79,7 @@ EPISODES = {
     "network": {"val": 100, "transfer": 100},
     "earlier": {"val": 200, "large": 100, "hazards": 100},
     "drift": {"val": 30},
+    "worlds": {"val": 50, "rooms": 50, "house": 50, "kitchen": 50, "by_rules": 50},
 }
 """The first episodes of each split that a table has."""
 _FIVE = ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet")
@@ -84,8 +91,9 @@ AGENTS: Mapping[str, Mapping[str, Sequence[str]]] = {
         "transfer": _FIVE[3:],
         "contact-heldout": _FIVE[1:3],
     },
+    "worlds": dict.fromkeys(("val", "rooms", "house", "kitchen", "by_rules"), _FIVE),
 }
-"""Agents and segmentation by split; `further` has harder splits."""
+"""Agents and segmentation by split; `further` has harder splits, `worlds` the houses of other projects."""
 ABLATION = {
     "stubborn-i": "I: none",
     "stubborn-ii": "II: untrap moves",
@@ -159,7 +167,9 @@ def comparisons() -> Iterator[Comparison]:
             rows = [RowKey.of(split, EPISODES[table][split], *name.split()) for name in names]
             for second, first in itertools.combinations(rows, 2):
                 one, other = second.run.setup, first.run.setup
-                yield Comparison(table, first, second, one.agent == "stubborn" and one.semantics == other.semantics)
+                of_headline = table == "worlds" and split == "val"
+                is_primary = one.agent == "stubborn" and one.semantics == other.semantics and not of_headline
+                yield Comparison(table, first, second, is_primary)
     for split in EPISODES["ablation"]:
         *rows, whole = _rows("ablation", split, ABLATION).values()
         yield from (Comparison("ablation", row, whole) for row in rows)

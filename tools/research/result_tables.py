@@ -11,10 +11,10 @@ between 0 and 1; `_low` and `_high` are the 95 % interval (`sim.app.evaluation.i
 column `family` names the primary comparisons of a table: `success_p_holm` and `spl_p_holm` are their p-values,
 corrected by Holm's method for all primary comparisons of the table in both metrics. All others are exploratory, and
 nothing is corrected for their number. `_replicates_sd` is the standard deviation that chance alone gives the mean over
-one replicate of each episode (`stubborn run --replicates`). The tables of results.md and motions.md
-stand between `<!-- table: NAME -->` and `<!-- end -->`. The sentences of these pages may quote only
-quantities with an interval, such as `94.0 [89.1, 98.0]`, that are in the CSV files, paper.md or the tables of
-motions, also with the opposite sign.
+one replicate of each episode (`stubborn run --replicates`). The tables of results.md, worlds.md and motions.md stand
+between `<!-- table: NAME -->` and `<!-- end -->`. The sentences of these pages may quote only quantities with an
+interval, such as `94.0 [89.1, 98.0]`, that are in the CSV files, paper.md or the tables of motions, also with the
+opposite sign.
 
 With --run, the folder --out receives the runs of the archive first, so that another machine continues where one
 stopped. The archive then holds all runs of --out that are of its version of the splits.
@@ -79,7 +79,7 @@ from tools.research.result_definitions import (
 Record = dict[str, str]
 """One row of a CSV file, by column."""
 DOCS = ROOT / "docs"
-PAGES = ("results.md", "motions.md")
+PAGES = ("results.md", "worlds.md", "motions.md")
 """Pages with tables."""
 RESULTS, COMPARISONS, PAPER, PUBLISHED = "results.csv", "comparisons.csv", "paper.md", "published_code.csv"
 QUANTITY = re.compile(r"([-+]?\d[\d.]*)(?: (?:points|steps|%|of SPL|of success))? \[([-+]?\d[\d.]*), ([-+]?\d[\d.]*)\]")
@@ -358,14 +358,18 @@ def with_families(pairs: Sequence[Comparison], records: Sequence[Record]) -> lis
     return classified
 
 
-def tables_by_page(results: Sequence[Record], motions: Mapping[str, str]) -> dict[str, Mapping[str, str]]:
+def tables_by_page(results: Sequence[Record], motions: Mapping[str, str]) -> dict[str, dict[str, str]]:
     """Returns for each page its tables as Markdown by name."""
     rows = {(*(record[name] for name in _identity_names()), record["episodes"]): record for record in results}
 
     def record_of(key: RowKey) -> Record:
         return rows[(*_identity(key.run).values(), str(key.episodes))]
 
-    return {"results.md": {t.name: table_text(t, record_of) for t in page_tables()}, "motions.md": motions}
+    texts: dict[str, dict[str, str]] = {page: {} for page in PAGES}
+    for table in page_tables():
+        texts[table.page][table.name] = table_text(table, record_of)
+    texts["motions.md"] |= motions
+    return texts
 
 
 def fill_page(page: str, texts: Mapping[str, str]) -> str:
