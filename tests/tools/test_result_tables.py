@@ -107,6 +107,7 @@ def test_runs_with_a_network_are_of_the_shipped_one_unless_they_name_another_in_
     assert {network for key, network in with_network.items() if "--weights" not in key.setup.options} == {shipped}
     assert shipped not in {network for key, network in with_network.items() if "--weights" in key.setup.options}
     assert VERSION == SPLIT_VERSION
+    assert {runs[key].run.config["config"]["detector"]["mirrored"] for key in with_network} == {False}
 
 
 def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, ArchivedRun]) -> None:

@@ -17,7 +17,9 @@ interval, such as `94.0 [89.1, 98.0]`, that are in the CSV files, paper.md or th
 opposite sign.
 
 With --run, the folder --out receives the runs of the archive first, so that another machine continues where one
-stopped. The archive then holds all runs of --out that are of its version of the splits.
+stopped. The archive then holds all runs of --out that are of its version of the splits. Rows with the network are in
+fp32 without the mirror image of each frame; only a processor without bf16 instructions runs them so by default, and
+others refuse to continue them.
 """
 
 from __future__ import annotations
@@ -103,8 +105,10 @@ generated houses (splits {VERSION}) with contacts. Compare orders and difference
 ground-truth segmentation, `rednet` the network that shipped with these splits. `cloned`, a small end-to-end agent,
 corresponds to the paper's EEAux and is not that agent.
 
-`stubborn reproduce all --episodes {PAPER_EPISODES} --workers 2` makes the same tables, and resumes; each table states
-its hours. This page is made from the [result lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
+`stubborn reproduce all --episodes {PAPER_EPISODES} --workers 2` measures these tables again, and resumes; each table
+states its hours. Here, the network computed in fp32; on a processor with bf16 instructions, the command averages each
+frame with its mirror image, so that rows with the network differ. This page is made from the [result
+lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
 
 ## Verdicts
 
