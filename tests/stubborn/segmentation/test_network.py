@@ -10,6 +10,7 @@ import pytest
 import torch
 
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError
+from stubborn.segmentation import network
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.network import NetworkSegmenter
@@ -124,14 +125,29 @@ def test_resolution_and_temperature_are_stored_with_the_weights(model: RedNet, t
 
 @pytest.mark.costly
 def test_a_mirrored_segmenter_averages_the_image_and_its_mirror_image(
-    model: RedNet, frame: dict[str, np.ndarray]
+    model: RedNet, frame: dict[str, np.ndarray], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     turned = {name: np.ascontiguousarray(image[:, ::-1]) for name, image in frame.items()}
-    plain, both = (NetworkSegmenter(model, block_px=1, mirrored=mirrored) for mirrored in (False, True))
-    assert not plain.bf16
+    plain = NetworkSegmenter(model, block_px=1)
     one, other = (plain.logits(images["rgb"], images["depth"]) for images in (frame, turned))
     expected = 0.5 * (one + other.flip(-1))
-    rounded = both.logits(frame["rgb"], frame["depth"])  # to bf16, where the processor has it
-    both.bf16 = False
-    torch.testing.assert_close(both.logits(frame["rgb"], frame["depth"]), expected, atol=1e-4, rtol=0.0)
-    assert float((rounded - expected).abs().mean()) < 0.02 * float((rounded - one).abs().mean())
+    both = {}
+    for bf16 in (True, False):
+        monkeypatch.setattr(network, "computes_bf16", lambda bf16=bf16: bf16)
+        assert not NetworkSegmenter(model).bf16
+        both[bf16] = NetworkSegmenter(model, block_px=1, mirrored=True).logits(frame["rgb"], frame["depth"])
+    torch.testing.assert_close(both[False], expected, atol=1e-4, rtol=0.0)
+    assert {both[True].dtype, *(tensor.dtype for tensor in model.parameters())} == {torch.float32}
+    assert 0.0 < float((both[True] - expected).abs().mean()) < 0.02 * float((both[True] - one).abs().mean())
+
+
+@pytest.mark.costly
+def test_a_segmenter_in_bf16_computes_what_autocast_computes(
+    model: RedNet, frame: dict[str, np.ndarray], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    both = {}
+    for bf16 in (True, False):
+        monkeypatch.setattr(network, "computes_bf16", lambda bf16=bf16: bf16)
+        with torch.autocast("cpu", torch.bfloat16, enabled=not bf16):
+            both[bf16] = NetworkSegmenter(model, mirrored=True).logits(frame["rgb"], frame["depth"])
+    assert torch.equal(both[True], both[False])
