@@ -76,8 +76,13 @@ def main(args: Args) -> int:
     """Measures and prints the figures; returns the exit status."""
     os.environ["LP_NUM_THREADS"] = "1"  # llvmpipe reads it when it starts
     cv2.setNumThreads(1)
-    houses, poses, steps = (1, 2, 6) if args.quick else (8, 10, 1500)
-    images = [_images(sensors, houses, poses) for sensors in (("rgb", "depth", "semantic"), ("depth", "semantic"))]
+    houses, poses, steps = (1, 2, 6) if args.quick else (8, 5, 600)
+    console = display.make_console()
+    images = []
+    for sensors in (("rgb", "depth", "semantic"), ("depth", "semantic")):
+        console.print(f"Rendering {display.counted(houses * poses, 'view')} with both renderers: {', '.join(sensors)}")
+        images.append(_images(sensors, houses, poses))
+    console.print(f"Running {steps} steps of stubborn with each kind of segmentation")
     truth_ms, with_truth_ms = _steps_ms("gt", steps)
     network_ms, _ = _steps_ms("rednet", steps)
     plain_ms = images[1].plain
@@ -91,7 +96,6 @@ def main(args: Args) -> int:
             value=1e3 / float(with_truth_ms.mean()), unit="/s", plain=1e3 / plain_ms,
         ),
     ]  # fmt: skip
-    console = display.make_console()
     console.print(_table(figures))
     console.print(f"{processor()}, {describe_gl()}, mujoco {mujoco.__version__}", soft_wrap=True)
     if args.out is not None:
