@@ -27,10 +27,7 @@ class MapLayers(Protocol):
     obstacle_evidence: NDArray[np.int8]
     seen_obstacle: NDArray[np.bool_]
     seen_at_eye_level: NDArray[np.bool_]
-    score_sum: NDArray[np.float32]
     score_max: NDArray[np.float32]
-    other_max: NDArray[np.float32]
-    found_step: NDArray[np.int32]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,10 +64,6 @@ class Look:
     """(goals,) Share of the frame that each category of `GOAL_CATEGORIES` covers."""
     goal_share: float
     """The value of the goal; 0 without a goal."""
-    target_rows: NDArray[np.int64]
-    """Rows on the map of the cells that show the goal."""
-    target_cols: NDArray[np.int64]
-    """Their columns."""
     touched: tuple[slice, slice] | None
     """Rectangle of the map that holds all points of the frame; None: the frame has no points."""
 
@@ -130,7 +123,6 @@ class PlanCamera:
         goal: str | None,
         layers: MapLayers,
         map_pose: Pose,
-        step: int,
         goals_seen: NDArray[np.uint32] | None = None,
     ) -> Look:
         """Looks from a pose and enters the frame into the layers of a map.
@@ -140,7 +132,6 @@ class PlanCamera:
             goal: the goal category; None: no goal.
             layers: of the map; they are changed.
             map_pose: the same pose in the frame of the map.
-            step: number of actions before this frame.
             goals_seen: (rows, cols) of the map; bit g is set where goal category g is in view.
         """
         frame, config, scratch = layers.frame, self.config, self._scratch_for(layers.frame)
@@ -173,7 +164,7 @@ class PlanCamera:
             scratch.nothing if goals_seen is None else goals_seen,
             pixels,
         )
-        targets, row_0, row_1, col_0, col_1 = enter_frame(
+        row_0, row_1, col_0, col_1 = enter_frame(
             scratch.flags,
             scratch.touched,
             count,
@@ -181,20 +172,15 @@ class PlanCamera:
             layers.obstacle_evidence,
             layers.seen_obstacle,
             layers.seen_at_eye_level,
-            layers.score_sum,
             layers.score_max,
-            layers.other_max,
-            layers.found_step,
-            step,
             config.hit,
             config.most,
             config.obstacle_from,
         )
         self._seen_cells += new
-        rows, cols = np.divmod(targets.astype(np.int64), frame.shape[1])
         touched = None if row_1 < 0 else (slice(row_0, row_1 + 1), slice(col_0, col_1 + 1))
         shares = pixels / (self._left.size * self._up.size)
-        return Look(shares, 0.0 if goal is None else float(shares[number]), rows, cols, touched)
+        return Look(shares, 0.0 if goal is None else float(shares[number]), touched)
 
     def _scratch_for(self, frame: GridFrame) -> _Scratch:
         if self._scratch is None or self._scratch.flags.shape != frame.shape:

@@ -202,33 +202,28 @@ def cast_rays(
 
 @njit(cache=True, error_model="numpy")
 def enter_frame(
-    flags, touched, count, frames_in_view, obstacle_evidence, seen_obstacle, seen_at_eye_level, score_sum, score_max,
-    other_max, found_step, step, hit, most, obstacle_from,
+    flags, touched, count, frames_in_view, obstacle_evidence, seen_obstacle, seen_at_eye_level, score_max, hit, most,
+    obstacle_from,
 ):  # fmt: skip
-    """Enters the flags of one frame into the layers of a map, and sets them to 0.
+    """Enters the flags of one frame into the layers of a map, sets the flags to 0, and returns the touched rectangle.
 
     Args:
         flags: (rows, cols) of `cast_rays`.
         touched: (n,) the cells with flags other than 0.
         count: number of them.
-        frames_in_view: (rows, cols) layers of `stubborn.mapping.navmap.NavMap`, as the next seven.
+        frames_in_view: (rows, cols) layers of `stubborn.mapping.navmap.NavMap`, as the next four.
         obstacle_evidence: see above.
         seen_obstacle: see above.
         seen_at_eye_level: see above.
-        score_sum: see above.
         score_max: see above.
-        other_max: see above.
-        found_step: see above.
-        step: number of actions before the frame.
         hit: evidence that a frame adds.
         most: limit of the evidence.
         obstacle_from: evidence that makes an obstacle.
 
     Returns:
-        (n,) the row-major cells that show the target; and the first and last row and column of the touched cells.
+        The first and last row and column of the touched cells; the last ones are -1 without such a cell.
     """
     cols = flags.shape[1]
-    targets, target_count = np.empty(count, np.int32), 0
     row_0, row_1, col_0, col_1 = flags.shape[0], -1, cols, -1
     for i in range(count):
         row, col = touched[i] // cols, touched[i] % cols
@@ -243,12 +238,5 @@ def enter_frame(
         if flag & IN_VIEW:
             frames_in_view[row, col] += 1
         if flag & TARGET:
-            if score_max[row, col] <= 0.5:
-                found_step[row, col] = step
-            score_sum[row, col] += 1.0
             score_max[row, col] = 1.0
-            targets[target_count] = touched[i]
-            target_count += 1
-        elif flag & IN_VIEW:
-            other_max[row, col] = 1.0
-    return targets[:target_count].copy(), row_0, row_1, col_0, col_1
+    return row_0, row_1, col_0, col_1

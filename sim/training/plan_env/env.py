@@ -364,9 +364,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
     def _look(self) -> None:
         """Enters the frame from the present pose into the map."""
         episode = self.episode
-        look = episode.camera.look(
-            episode.robot.pose, episode.goal, self.navmap, self._pose, episode.num_steps, self.navmap.goals_seen
-        )
+        look = episode.camera.look(episode.robot.pose, episode.goal, self.navmap, self._pose, self.navmap.goals_seen)
         if look.touched is not None:
             self.navmap.grow_known(*look.touched)
         episode.see(look)

@@ -77,7 +77,7 @@ def search(camera: PlanCamera, goal: str, start: Pose, rng: np.random.Generator)
     poses: list[Pose] = []
     actions: list[Action] = []
     while len(actions) < MAX_STEPS:
-        look = camera.look(robot.pose, goal, layers, robot.pose, len(actions))
+        look = camera.look(robot.pose, goal, layers, robot.pose)
         if not is_found and look.goal_share >= EXPLORED_SHARE:
             is_found, times = True, _times_to(plan, stops & everywhere, everywhere, robot.pose)
         poses.append(robot.pose)

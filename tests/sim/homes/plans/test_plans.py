@@ -52,12 +52,12 @@ def test_a_look_shows_the_share_of_the_goal_the_floor_and_the_map_that_the_real_
     scene = Scene(house, robot=RobotConfig(), camera=CameraModel(), profile="fast")
     twin, real, mapper = NavMap.empty(MAP), NavMap.empty(MAP), Mapper(CameraModel(), RobotModel(), MappingConfig())
     camera, floor = PlanCamera(plan_of(house)), scene.task.truth.unseen_floor()
-    for step, yaw_rad in enumerate((START.yaw_rad, -0.4, -1.2)):
+    for yaw_rad in (START.yaw_rad, -0.4, -1.2):
         pose = Pose(START.x_m, START.y_m, yaw_rad)
         images = scene.camera.render(scene.world.data, pose, ("depth", "semantic"))
         floor.look(images["semantic"], pose)
         mapper.add_depth(mapper.frame(real, pose.relative_to(START)), images["depth"])
-        look = camera.look(pose, "bed", twin, pose.relative_to(START), step)
+        look = camera.look(pose, "bed", twin, pose.relative_to(START))
         assert look.goal_share == pytest.approx(goal_share(images["semantic"], "bed"), abs=0.004)
     scene.close()
     assert camera.area_seen_m2 == pytest.approx(floor.area_m2, rel=0.07)

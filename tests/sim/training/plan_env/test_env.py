@@ -20,9 +20,7 @@ from sim.homes.plans.export import export_plans
 from sim.homes.plans.plan import read_plan, write_plan
 from sim.homes.plans.sight import PlanCamera, SightConfig
 from sim.training.plan_env.env import LAYERS, PlanEnv, PlanEnvConfig
-from stubborn.agents import SPECS
 from tests.helpers import wording
-from tests.helpers.plan_agent import PlanAgent, plan_agent_config, run_episode
 from tests.helpers.worlds import bed_behind_a_wall, room, with_box
 
 
@@ -99,16 +97,6 @@ def test_the_same_seed_gives_the_same_episode_and_no_state_survives_a_reset(plan
     for one, other in zip(*frames, strict=True):
         for key, value in one.items():
             np.testing.assert_array_equal(value, other[key])
-
-
-def test_the_agent_finds_the_bed_in_the_plan(plans):
-    agent = PlanAgent(plan_agent_config(SPECS["stubborn"].config))
-    camera = PlanCamera(read_plan(plans / "flat.npz"))
-    found = run_episode(agent, camera, "bed", START["start"], seed=0)
-    assert found["success"] == 1.0
-    assert found["num_steps"] < 120
-    sight = run_episode(agent, camera, "bed", START["start"], seed=0, until_sight=True)
-    assert sight["num_steps"] == sight["first_seen_step"] == found["first_seen_step"]
 
 
 def test_a_start_is_sampled_for_the_goal_and_a_goal_for_the_start(tmp_path):

@@ -43,7 +43,7 @@ def test_it_does_not_know_where_the_goal_is(plan: Plan, monkeypatch: pytest.Monk
     poses, actions = search(camera, "bed", start, np.random.default_rng(0))
     camera.reset()
     layers = NavMap.empty(plan.frame)
-    shares = [camera.look(pose, "bed", layers, pose, step).goal_share for step, pose in enumerate(poses)]
+    shares = [camera.look(pose, "bed", layers, pose).goal_share for pose in poses]
     in_view = next(step for step, share in enumerate(shares) if share >= EXPLORED_SHARE)
     assert in_view > 10
     monkeypatch.setattr("sim.training.plan_env.walks.EXPLORED_SHARE", 2.0)

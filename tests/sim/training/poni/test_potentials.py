@@ -56,7 +56,7 @@ def test_a_walk_stays_on_free_ground_and_sees_the_house(plan: Plan):
     for pose, _ in explore(camera, start, np.random.default_rng(0), most_steps=120, unseen_share=0.8):
         row, col = plan.frame.cell(pose.x_m, pose.y_m)
         assert plan.slack_m[row, col] > -0.05
-        camera.look(pose, None, _empty(), pose.relative_to(start), 0)
+        camera.look(pose, None, _empty(), pose.relative_to(start))
     assert camera.area_seen_m2 > 0.8 * np.count_nonzero(plan.floor) * plan.frame.cell_m**2
 
 
@@ -91,7 +91,7 @@ def test_each_frontier_cell_has_the_potential_of_its_place_in_the_plan(plan: Pla
     start, camera, navmap = Pose(-3.0, 1.0, 0.7), PlanCamera(plan), _empty()
     for turns in range(3):
         world = Pose(start.x_m, start.y_m, start.yaw_rad + turns * math.radians(30.0))
-        look = camera.look(world, None, navmap, world.relative_to(start), turns, navmap.goals_seen)
+        look = camera.look(world, None, navmap, world.relative_to(start), navmap.goals_seen)
         navmap.grow_known(*look.touched)  # type: ignore[misc]
     navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
     here = ground(navmap, Pose(0.0, 0.0, math.radians(60.0)), navmap.known_window(20))

@@ -13,6 +13,7 @@ from gymnasium.utils.env_checker import check_env
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES
+from sim.homes.plans.episode import PlanEpisode
 from sim.homes.plans.export import export_plans
 from sim.homes.plans.plan import read_plan, write_plan
 from sim.homes.plans.sight import PlanCamera
@@ -23,7 +24,7 @@ from sim.training.semexp.trainer import Run
 from stubborn.agent import AgentConfig
 from stubborn.exploration.semexp import SemExpConfig, SemExpExplorer
 from stubborn.exploration.semexp_input import PolicyInput
-from tests.helpers.plan_agent import PlanAgent, plan_agent_config, run_episode
+from tests.helpers.plan_agent import PlanAgent, explore_until_sight
 from tests.helpers.worlds import bed_behind_a_wall, with_box
 
 
@@ -88,10 +89,11 @@ def test_the_policy_gets_the_same_input_in_training_and_in_episodes(plans: Path)
 
     exact = replace(FAST, plan_every=1, plan_pool=1, sight=PlanEnvConfig().sight, goal_steps=4)
     explorer = SemExpExplorer(SemExpConfig(goal_steps=4), policy)
-    agent = PlanAgent(plan_agent_config(AgentConfig()))
-    agent.explorer = explorer
     start = Pose(-3.0, 1.0, 3.0)  # looks away from the bed
-    run_episode(agent, PlanCamera(read_plan(plans / "flat.npz")), "bed", start, seed=0, until_sight=True)
+    episode = PlanEpisode(PlanCamera(read_plan(plans / "flat.npz")), "bed", start)
+    agent = PlanAgent(AgentConfig(), episode)
+    agent.explorer = explorer
+    explore_until_sight(agent, episode)
     env = SemExpEnv(plans, exact)
     seen, _ = env.reset(seed=0, options={**START, "start": start})
     for number, expected in enumerate(given[:6], 1):
