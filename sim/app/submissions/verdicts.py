@@ -41,8 +41,6 @@ class Verdict:
     framed: bool
     text: str
     """The differences and their meaning; "" for an equal episode."""
-    largest: float
-    """Largest difference of a length, metres."""
     known_path: Literal["", "oracle", "shortest"] = ""
     """`oracle`: the actions are the oracle's, one by one; `shortest`: a success on a path hardly longer than the
     shortest one. An agent that has never seen the house takes such a path where it sees the goal early."""
@@ -58,18 +56,18 @@ def judge(entry: Entry, replay: Replay | None, *, tolerance_m: float = TOLERANCE
     """
     episode_id = entry.result.episode_id
     if replay is None:
-        return Verdict(episode_id, "error", False, "it ended with an error: a failure, which is not replayed", 0.0)
+        return Verdict(episode_id, "error", False, "it ended with an error: a failure, which is not replayed")
     if replay.fault or replay.metrics is None:
         text = f"{replay.fault}. The result does not come from these actions in this episode"
-        return Verdict(episode_id, "different", replay.framed, text, math.inf)
+        return Verdict(episode_id, "different", replay.framed, text)
     known = _known_path(replay.metrics, is_oracles=replay.is_oracles)
-    differing, largest, near = _differences(entry, replay.metrics, replay.framed, tolerance_m)
+    differing, near = _differences(entry, replay.metrics, replay.framed, tolerance_m)
     if differing:
         text = f"{'; '.join(differing)}. {_meaning(entry, replay, tolerance_m)}"
-        return Verdict(episode_id, "different", replay.framed, text, largest, known)
+        return Verdict(episode_id, "different", replay.framed, text, known)
     if near:
-        return Verdict(episode_id, "within tolerance", replay.framed, "; ".join(near), largest, known)
-    return Verdict(episode_id, "equal", replay.framed, "", 0.0, known)
+        return Verdict(episode_id, "within tolerance", replay.framed, "; ".join(near), known)
+    return Verdict(episode_id, "equal", replay.framed, "", known)
 
 
 def _known_path(metrics: EpisodeMetrics, *, is_oracles: bool) -> Literal["", "oracle", "shortest"]:
@@ -83,9 +81,9 @@ def _known_path(metrics: EpisodeMetrics, *, is_oracles: bool) -> Literal["", "or
 
 def _differences(
     entry: Entry, metrics: EpisodeMetrics, framed: bool, tolerance_m: float
-) -> tuple[list[str], float, list[str]]:
-    """Returns the differences beyond the tolerance, the largest difference in metres, and those within it."""
-    differing, near, largest = [], [], 0.0
+) -> tuple[list[str], list[str]]:
+    """Returns the differences beyond the tolerance, and those within it."""
+    differing, near = [], []
     if [_outcome(goal) for goal in entry.result.goals or ()] != [_outcome(goal) for goal in metrics.goals or ()]:
         differing.append("the goals of the chain have other results in the replay")
     shortest_m = max(metrics.shortest_path or 0.0, MIN_PATH_M)
@@ -97,13 +95,11 @@ def _differences(
     for name, most in allowed.items():
         submitted, replayed = getattr(entry.result, name), getattr(metrics, name)
         off = _off(submitted, replayed)
-        if name in LENGTHS and math.isfinite(off):
-            largest = max(largest, off)
         if off > ROUNDING:
             (differing if off > max(most, ROUNDING) else near).append(
                 f"{name} {_text(submitted)}, in the replay {_text(replayed)}"
             )
-    return differing, largest, near
+    return differing, near
 
 
 def _outcome(goal: GoalResult) -> tuple[object, ...]:

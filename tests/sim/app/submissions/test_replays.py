@@ -177,7 +177,6 @@ def test_lengths_may_differ_by_the_tolerance(folder: Path, tmp_path: Path, off_m
     content["episodes"][0]["result"]["path_length"] += off_m
     (verdict,) = judged(folder, written(tmp_path / "near.json.gz", content))
     assert verdict.judgement == judgement
-    assert verdict.largest == pytest.approx(off_m)
 
 
 @pytest.mark.parametrize(
