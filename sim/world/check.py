@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from sim.core.errors import HouseError
 from sim.core.geometry.grid import GridFrame
-from sim.core.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
+from sim.core.interface import GOAL_CATEGORIES, SuccessRule
 from sim.core.wishes import ROOMS
 from sim.gl import mujoco
 from sim.houses.geoms import data_at_rest, world_boxes
@@ -50,13 +50,7 @@ STRUCTURE = frozenset(("wall", "floor", "ceiling", "door", "window", "stairs", "
 """Parts of the building: they may overlap each other."""
 
 
-def check_house(
-    spec: mujoco.MjSpec,
-    *,
-    furnished: bool = False,
-    rule: SuccessRule | None = None,
-    robot: RobotModel | None = None,
-) -> list[str]:
+def check_house(spec: mujoco.MjSpec, *, furnished: bool = False) -> list[str]:
     """Returns a sentence for each fault of a house; an empty list if the house has no fault.
 
     Args:
@@ -64,8 +58,6 @@ def check_house(
         furnished: True: each room must also have the furniture of its kind (`sim.world.room_requirements`), which must
             stand as dwelling design wants it (`sim.world.arrangement`), and the floor plan must keep the rules of
             `sim.world.plan_requirements`, as in every generated house.
-        rule: its success distance and storey height count; the default rule when None.
-        robot: its radius and height count; the default robot when None.
     """
     try:
         house = _compiled(spec, None)
@@ -79,7 +71,7 @@ def check_house(
         faults += arrangement_faults(house.model, house.data, house.labels, house.rooms, standing)
     if not house.rooms:
         return [*faults, "it has no room sites"]
-    return faults + _unreachable(house, rule or SuccessRule(), robot or RobotModel())
+    return faults + _unreachable(house)
 
 
 def advise_house(spec: mujoco.MjSpec) -> list[str]:
@@ -110,7 +102,7 @@ def check_own_house(house: House) -> tuple[list[str], list[str]]:
     compiled = _compiled(house.spec, house.rules)
     remarks = _overlaps(compiled) + _without_support(compiled) + _unstable(compiled.model)
     remarks += _doubtful_rooms(compiled.model, compiled.rooms)
-    faults = _unreachable(compiled, SuccessRule(), RobotModel())
+    faults = _unreachable(compiled)
     try:
         read_instance_facts(compiled.model, compiled.labels)
     except HouseError as error:
@@ -242,41 +234,35 @@ def is_part_of(item: Standing, hazard: Hazard) -> bool:
     return bool(inside.all())
 
 
-def _unreachable(house: _CompiledHouse, rule: SuccessRule, robot: RobotModel) -> list[str]:
-    """Finds rooms and goal categories that the robot cannot reach from the room with the most free space.
+def _unreachable(house: _CompiledHouse) -> list[str]:
+    """Finds rooms and goal categories that the default robot cannot reach from the room with the most free space.
 
     Each storey counts for itself: the robot starts on it and cannot leave it.
     """
     faults: list[str] = []
     near: set[str] = set()
     if not house.rooms:
-        faults, near = _unreachable_without_rooms(house, rule, robot)
+        faults, near = _unreachable_without_rooms(house)
     for floor_z_m in sorted({room.floor_z_m for room in house.rooms}):
-        of_storey, reached = _unreachable_on(house, floor_z_m, rule, robot)
+        of_storey, reached = _unreachable_on(house, floor_z_m)
         faults += of_storey
         near |= reached
     goals = [category for category in GOAL_CATEGORIES if house.labels.of_category(category)]
     return faults + [f"the robot cannot come near any {category}" for category in goals if category not in near]
 
 
-def _unreachable_without_rooms(
-    house: _CompiledHouse, rule: SuccessRule, robot: RobotModel
-) -> tuple[list[str], set[str]]:
+def _unreachable_without_rooms(house: _CompiledHouse) -> tuple[list[str], set[str]]:
     """Returns the faults of a house without room sites, and the goal categories that the robot can approach."""
-    space = FreeSpace(house.model, house.data, house.labels, robot=robot, rule=rule)
+    space = FreeSpace(house.model, house.data, house.labels)
     reached = space.largest_part()
     if not reached.any():
         return ["it has no free position for the robot on the ground storey"], set()
-    return [], _goals_near(house, reached, space.frame, (-math.inf, math.inf), rule)
+    return [], _goals_near(house, reached, space.frame, (-math.inf, math.inf))
 
 
-def _unreachable_on(
-    house: _CompiledHouse, floor_z_m: float, rule: SuccessRule, robot: RobotModel
-) -> tuple[list[str], set[str]]:
+def _unreachable_on(house: _CompiledHouse, floor_z_m: float) -> tuple[list[str], set[str]]:
     """Returns the faults of the rooms of one storey, and the goal categories that the robot comes near on it."""
-    space = FreeSpace(
-        house.model, house.data, house.labels, rooms=house.rooms, robot=robot, rule=rule, floor_z_m=floor_z_m
-    )
+    space = FreeSpace(house.model, house.data, house.labels, rooms=house.rooms, floor_z_m=floor_z_m)
     x, y = space.frame.axes()
     rooms = [room for room in house.rooms if room.floor_z_m == floor_z_m]
     masks = {room.name: space.free & _room_mask(room, x, y) for room in rooms}
@@ -295,15 +281,11 @@ def _unreachable_on(
         if free > MIN_ROOM_CELLS and entered < MIN_CONNECTED_SHARE * free
     ]
     top_m = max(z + half for room in rooms for (_, _, z), (_, _, half) in room.boxes)
-    return faults, _goals_near(house, reached, space.frame, (floor_z_m, top_m), rule)
+    return faults, _goals_near(house, reached, space.frame, (floor_z_m, top_m))
 
 
 def _goals_near(
-    house: _CompiledHouse,
-    reached: NDArray[np.bool_],
-    frame: GridFrame,
-    heights_m: tuple[float, float],
-    rule: SuccessRule,
+    house: _CompiledHouse, reached: NDArray[np.bool_], frame: GridFrame, heights_m: tuple[float, float]
 ) -> set[str]:
     """Returns the goal categories with an instance between two heights near one of the cells reached (rows, cols)."""
 
@@ -313,7 +295,7 @@ def _goals_near(
         if not heights_m[0] <= middle_m < heights_m[1]:
             return False
         (x0, y0, _), (x1, y1, _) = low.min(axis=0).tolist(), high.max(axis=0).tolist()
-        return _any_within(reached, frame, (x0, y0, x1, y1), rule.distance_m - REACH_MARGIN_M)
+        return _any_within(reached, frame, (x0, y0, x1, y1), SuccessRule.distance_m - REACH_MARGIN_M)
 
     return {
         category

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from sim.core.interface import RobotModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.house import House
 from sim.world.check import check_house, check_own_house
@@ -15,9 +14,10 @@ def table(house: House, *, x_m: float = 0.0, z_m: float = 0.4, name: str = "tabl
     return with_box(house, name, centre_m=(x_m, 0.0, z_m), half_m=(0.3, 0.3, 0.4))
 
 
-def plant_behind_a_bed() -> House:
-    """Returns a room in which the robot gets within 0.78 m of a plant (from x = 2.7 m) behind a bed (from 2.1 m)."""
-    house = with_box(room(6, 4), "bed_00", centre_m=(2.3, 0.0, 0.5), half_m=(0.2, 2.0, 0.5))
+def plant_behind_a_bed(width_m: float) -> House:
+    """Returns a room in which a plant (from x = 2.7 m) is 0.2 m behind a bed of a width."""
+    bed_m = 0.5 * width_m
+    house = with_box(room(6, 4), "bed_00", centre_m=(2.5 - bed_m, 0.0, 0.5), half_m=(bed_m, 2.0, 0.5))
     return with_box(house, "plant_00", centre_m=(2.8, 0.0, 0.2), half_m=(0.1, 0.1, 0.2))
 
 
@@ -107,17 +107,14 @@ def test_a_goal_category_without_access_is_reported() -> None:
     assert "the robot cannot come near any plant" in check_house(house.spec)
 
 
-def test_access_to_a_goal_depends_on_the_success_distance() -> None:
-    spec = plant_behind_a_bed().spec
-    assert check_house(spec) == []
-    assert check_house(spec, rule=SuccessRule(distance_m=0.8)) == ["the robot cannot come near any plant"]
+def test_access_to_a_goal_depends_on_what_stands_before_it() -> None:
+    assert check_house(plant_behind_a_bed(0.4).spec) == []
+    assert check_house(plant_behind_a_bed(0.8).spec) == ["the robot cannot come near any plant"]
 
 
-def test_access_to_a_room_depends_on_the_size_of_the_robot() -> None:
-    spec = room_with_a_passage(0.45).spec
-    assert check_house(spec) == []
-    wide = RobotModel(radius_m=0.25)
-    assert check_house(spec, robot=wide) == ["the robot cannot reach a part of room_living_00"]
+def test_access_to_a_room_depends_on_the_width_of_its_passage() -> None:
+    assert check_house(room_with_a_passage(0.45).spec) == []
+    assert check_house(room_with_a_passage(0.3).spec) == ["the robot cannot reach a part of room_living_00"]
 
 
 def test_a_house_without_room_sites_is_reported() -> None:
