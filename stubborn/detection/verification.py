@@ -15,7 +15,7 @@ from typing import Annotated, Protocol, runtime_checkable
 import msgspec
 
 from sim.core.interface import MPCAT40, ConfigError, SegmenterSpec
-from sim.core.reading import Number, convert, read_json
+from sim.core.reading import Number, read_json
 from stubborn.detection.classifiers import Features, NaiveBayes
 
 FOLDER = Path(__file__).parent / "verifiers"
@@ -27,8 +27,6 @@ NAIVE_BAYES = "naive-bayes"
 ACCEPT_ALL = "none"
 """The method that accepts every candidate."""
 _Variance = Annotated[float, msgspec.Meta(gt=0.0, le=1e12)]
-
-
 _Four = tuple[Number, Number, Number, Number]
 _Variances = tuple[_Variance, _Variance, _Variance, _Variance]
 
@@ -46,16 +44,22 @@ class _NaiveBayes(msgspec.Struct):
 
 
 class _Method(msgspec.Struct):
-    """Parameters of one method."""
+    """Parameters of the method."""
 
     pooled: _NaiveBayes
     categories: dict[str, _NaiveBayes]
 
 
+class _Methods(msgspec.Struct, rename="kebab"):
+    """Parameters by method."""
+
+    naive_bayes: _Method
+
+
 class _File(msgspec.Struct):
     """A file of parameters."""
 
-    methods: dict[str, object]
+    methods: _Methods
 
 
 class Verifier(Protocol):
@@ -109,21 +113,15 @@ class FittedVerifier:
     may_refuse = True
 
     @classmethod
-    def read(cls, file: Path, method: str = NAIVE_BAYES) -> FittedVerifier:
+    def read(cls, file: Path) -> FittedVerifier:
         """Returns the verifier in a file that `stubborn train verifier` wrote.
 
         Raises:
-            ConfigError: the method is unknown, or the file is missing or holds something else.
+            ConfigError: the file is missing or holds something else.
         """
-        if method != NAIVE_BAYES:
-            raise ConfigError(f"Unknown verification '{method}'. Available: {NAIVE_BAYES}, {ACCEPT_ALL}.")
-        where = f"Verifier file '{file}'"
-        methods = read_json(file, _File, what="Verifier file").methods
-        if method not in methods:
-            raise ConfigError(f"{where} has no method '{method}'. It has: {', '.join(methods) or 'none'}.")
-        content = convert(methods[method], _Method, where=f"{where}, method '{method}'")
-        own = {name: category.classifier() for name, category in content.categories.items()}
-        return cls(own, content.pooled.classifier())
+        parameters = read_json(file, _File, what="Verifier file").methods.naive_bayes
+        own = {name: category.classifier() for name, category in parameters.categories.items()}
+        return cls(own, parameters.pooled.classifier())
 
     def probability(self, goal: str, features: Features) -> float:
         """Returns the probability in [0, 1] that a candidate for this goal is true."""
@@ -156,8 +154,10 @@ def verifier_for(spec: SegmenterSpec, file: Path | None = None, method: str = NA
     Raises:
         ConfigError: the file holds no parameters, or the method is unknown.
     """
+    if method not in (NAIVE_BAYES, ACCEPT_ALL):
+        raise ConfigError(f"Unknown verification '{method}'. Available: {NAIVE_BAYES}, {ACCEPT_ALL}.")
     if method == ACCEPT_ALL or (file is None and not spec.needs_verification):
         return AcceptAll()
     if file is None:
         file = FOLDER / f"{spec.kind if has_parameters(spec.kind) else DEFAULT_KIND}.json"
-    return FittedVerifier.read(file, method)
+    return FittedVerifier.read(file)

@@ -190,5 +190,5 @@ def test_a_file_with_a_wrong_parameter_is_refused_with_its_place(change: dict, f
     method = {"pooled": good, "categories": {"bed": good}}
     written({"methods": {"naive-bayes": method}}, tmp_path)
     method |= {part: good | change if part == "pooled" else {"bed": good | change}}
-    with pytest.raises(ConfigError, match=rf"kind\.json', method 'naive-bayes', field '{part}.*{field}"):
+    with pytest.raises(ConfigError, match=rf"kind\.json', field 'methods.naive-bayes.{part}.*{field}"):
         written({"methods": {"naive-bayes": method}}, tmp_path)
