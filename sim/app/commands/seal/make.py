@@ -81,25 +81,14 @@ def _make_announced(args: Args, file: Path) -> int:
     announcement = read_announcement(file)
     if args.out.resolve().name != announcement.name:
         raise ConfigError(f"--out must be a folder named '{announcement.name}', as '{file}' announces.")
-    split, secret = make_announced_split(args.out, file, args.beacon, workers=args.workers)
+    secret = secret_of(sha256_of(file, what="Announcement"), convert(args.beacon, Commit, where="--beacon"))
+    houses, episode_count = announcement.houses, announcement.episodes
+    split = make_split(args.out, secret, houses=houses, episode_count=episode_count, workers=args.workers)
     write_published(seal_file(args.out), seal_of(split, secret, (file, args.beacon)), "a seal")
-    size = f"{counted(announcement.houses, 'house')}, {counted(announcement.episodes, 'episode')}"
+    size = f"{counted(houses, 'house')}, {counted(episode_count, 'episode')}"
     print(f"{args.out}: {size}, sha256 {split.sha256}.")
     print(f"Commit {seal_file(args.out)}, then run the agent that was frozen.")
     return 0
-
-
-def make_announced_split(folder: Path, file: Path, beacon: str, *, workers: int) -> tuple[Split, str]:
-    """Writes the split of an announcement and a beacon; returns it with its secret.
-
-    Raises:
-        ConfigError: the announcement cannot be read, or the beacon is not a hash of 40 hexadecimal digits.
-        HouseError: no seed of a house gives a house.
-    """
-    announcement, beacon = read_announcement(file), convert(beacon, Commit, where="--beacon")
-    secret = secret_of(sha256_of(file, what="Announcement"), beacon)
-    houses, episode_count = announcement.houses, announcement.episodes
-    return make_split(folder, secret, houses=houses, episode_count=episode_count, workers=workers), secret
 
 
 def require_empty(folder: Path) -> None:
