@@ -40,17 +40,8 @@ Lines = Mapping[AgentSetup, Sequence[EpisodeResult]]
 """The lines of each setup, of the same episodes in the same order."""
 
 
-def ablation_rows(names: Iterable[str]) -> dict[str, str]:
-    """Returns the agent of each row, by Roman numeral; the last row is the whole agent, `stubborn`.
-
-    Args:
-        names: the agents of the ablation in order: stubborn-i, stubborn-ii, ...
-    """
-    rows = {name.rpartition("-")[2].upper(): name for name in names}
-    return {**rows, list(rows)[-1]: "stubborn"}  # its episodes also serve the other tables
-
-
-ABLATION = ablation_rows(agents.ABLATION)
+ABLATION = dict(zip(("I", "II", "III", "IV", "V"), (*tuple(agents.ABLATION)[:-1], "stubborn"), strict=True))
+"""The agent of each row of the ablation; the last is the whole agent, whose episodes also serve the other tables."""
 
 
 @dataclass(frozen=True)
@@ -103,11 +94,7 @@ def ablation(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
 
 def exploration(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     """Returns Table IV: how often the goal was seen, by category."""
-    rows: list[tuple[str, list[Cell | str]]] = [
-        (f"{goal} ({len(some[setups[0]])})", [mean_cell(EXPLORED, some[setup]) for setup in setups])
-        for goal, some in _by_goal(lines)
-    ]
-    rows.append((f"all ({len(lines[setups[0]])})", [mean_cell(EXPLORED, lines[setup]) for setup in setups]))
+    rows = _rows_by_goal(lines, lambda part: [mean_cell(EXPLORED, part[setup]) for setup in setups])
     header = ("goal (episodes)", *(setup.name for setup in setups))
     seen = ResultTable("exploration", "GT exploration, %: the goal covered 0.8 % of a frame", header, rows)
     pairs = [(a, b) for i, b in enumerate(setups) for a in setups[:i]]
@@ -125,16 +112,15 @@ def categories(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     """Returns Table V: success by category, and the difference of the first setup to each other one."""
     pairs = _against_first(setups)
 
-    def row(of: Lines) -> list[Cell | str]:
+    def row(part: Lines) -> list[Cell | str]:
         return [
-            *(mean_cell(SUCCESS, of[setup]) for setup in setups),
-            *(difference_cell(SUCCESS, of[b], of[a]) for a, b in pairs),
+            *(mean_cell(SUCCESS, part[setup]) for setup in setups),
+            *(difference_cell(SUCCESS, part[b], part[a]) for a, b in pairs),
         ]
 
-    rows = [(f"{goal} ({len(some[setups[0]])})", row(some)) for goal, some in _by_goal(lines)]
-    rows.append((f"all ({len(lines[setups[0]])})", row(lines)))
     header = ("goal (episodes)", *(setup.name for setup in setups), *(f"{a.name} - {b.name}" for a, b in pairs))
-    return [ResultTable("categories", f"Success, %, {setups[0].semantics} segmentation", header, rows)]
+    title = f"Success, %, {setups[0].semantics} segmentation"
+    return [ResultTable("categories", title, header, _rows_by_goal(lines, row))]
 
 
 def overall(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
@@ -313,10 +299,11 @@ def _failed_by(cause: str, first: Sequence[EpisodeResult], second: Sequence[Epis
     return Cell(difference, percent=True, difference=True)
 
 
-def _by_goal(lines: Lines) -> list[tuple[str, Lines]]:
-    """Returns the goals that occur, in the order of the contract, with their lines."""
-    parts = [
-        (goal, {setup: [result for result in of if result.goal == goal] for setup, of in lines.items()})
-        for goal in GOAL_CATEGORIES
-    ]
-    return [(goal, part) for goal, part in parts if all(part.values())]
+def _rows_by_goal(lines: Lines, row: Callable[[Lines], list[Cell | str]]) -> list[tuple[str, list[Cell | str]]]:
+    """Returns a row for each goal that occurs, in the order of the contract, and one for all episodes."""
+    rows = []
+    for goal in (*GOAL_CATEGORIES, "all"):
+        part = {setup: [result for result in of if goal in (result.goal, "all")] for setup, of in lines.items()}
+        if all(part.values()):
+            rows.append((f"{goal} ({len(next(iter(part.values())))})", row(part)))
+    return rows
