@@ -24,8 +24,8 @@ class CandidateLine(LogLine, frozen=True, kw_only=True):
     candidates: tuple[tuple[Number, Number, Number, Number, Number, Number, Number], ...] = ()
 
 
-class RecordingVerifier:
-    """A verifier that rejects every candidate and records it with the truth.
+class CandidateRecorder:
+    """Runs whole episodes as the verifier of an agent, which rejects every candidate and records it with the truth.
 
     Candidates that are verified from too far away to stop (`Approach.near_enough` is False) are not recorded: a STOP
     fails there at a true instance too, which would be recorded as a false candidate.
@@ -33,16 +33,23 @@ class RecordingVerifier:
 
     may_refuse = True
 
-    def __init__(self, env: ObjectNavEnv) -> None:
+    def __init__(self, env: ObjectNavEnv, segmenter: Segmenter) -> None:
         self._env = env
-        self.agent: StubbornAgent | None = None
-        """The agent that asks; None: every candidate is recorded."""
         self.candidates: list[list[float]] = []
-        """Features; 1 where a STOP would have succeeded, else 0; the robot's x and y in metres."""
+        """Those of the last episode: features; 1 where a STOP would have succeeded, else 0; the robot's x and y in
+        metres."""
+        self.agent = StubbornAgent(
+            camera=env.camera_model,
+            robot=env.robot_model,
+            success=env.success_rule,
+            segmenter=segmenter,
+            verifier=self,
+            config=AgentConfig(target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER)),
+        )
 
     def accepts(self, goal: str, features: Features) -> bool:
         """Records the candidate and returns False."""
-        approach = None if self.agent is None else self.agent.approach
+        approach = self.agent.approach
         if approach is not None and not approach.near_enough:
             return False
         world, task = self._env.scene.world, self._env.scene.task
@@ -55,31 +62,10 @@ class RecordingVerifier:
         """Returns False and records nothing, so that the nearest candidate is visited first."""
         return False
 
-
-class CandidateRecorder:
-    """An agent that runs whole episodes, because its verifier records every candidate and rejects it."""
-
-    def __init__(self, env: ObjectNavEnv, segmenter: Segmenter) -> None:
-        self._env = env
-        self._verifier = RecordingVerifier(env)
-        self._agent = self._verifier.agent = StubbornAgent(
-            camera=env.camera_model,
-            robot=env.robot_model,
-            success=env.success_rule,
-            segmenter=segmenter,
-            verifier=self._verifier,
-            config=AgentConfig(target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER)),
-        )
-
-    @property
-    def candidates(self) -> list[list[float]]:
-        """The candidates of the last episode (`RecordingVerifier.candidates`)."""
-        return self._verifier.candidates
-
     def run(self, episode: Episode, seed: int) -> int:
         """Runs an episode to its last step; returns the number of its steps, 0 if it failed."""
-        self._verifier.candidates = []
-        ran = run_whole(self._env, self._agent, episode, seed)
+        self.candidates = []
+        ran = run_whole(self._env, self.agent, episode, seed)
         return self._env.scene.task.num_steps if ran else 0
 
 

@@ -21,8 +21,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-
-import msgspec
+from typing import Any
 
 from sim.app import cli
 from sim.app.commands.train.episode_logs import LogOptions, checked_split, default_log, lines_of
@@ -30,7 +29,6 @@ from sim.app.composition.segmenters import find_segmentation, make_segmenter
 from sim.app.evaluation.workers import RunnerSpec
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
-from sim.core.reading import convert
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
@@ -101,34 +99,14 @@ class CandidateRunner:
         self._env.close()
 
 
-class _Method(msgspec.Struct):
-    """A fitted method."""
-
-    left_out: dict[str, int | float | list[dict[str, int | float]] | None]
-    """Its quality on houses left out; `by_probability` has a list."""
-    categories: dict[str, object]
-    """Parameters of the categories with a classifier of their own."""
-
-
-class _Fit(msgspec.Struct):
-    """The part of the parameters that is printed."""
-
-    episodes: int
-    candidates: dict[str, dict[str, int]]
-    methods: dict[str, _Method]
-
-
-def report(content: Mapping[str, object]) -> None:
-    """Prints the counts, and the quality of each method on houses left out."""
-    fitted = convert(content, _Fit, where="The parameters")
-    print(f"{fitted.episodes} episodes")
-    own = fitted.methods[NAIVE_BAYES].categories
-    for goal, pair in fitted.candidates.items():
-        pooled = "" if goal in own else "  (pooled)"
+def report(fitted: Mapping[str, Any]) -> None:
+    """Prints the counts, and the quality on houses left out, of what `sim.training.fits.verifier.fit` returns."""
+    print(f"{fitted['episodes']} episodes")
+    method = fitted["methods"][NAIVE_BAYES]
+    for goal, pair in fitted["candidates"].items():
+        pooled = "" if goal in method["categories"] else "  (pooled)"
         print(f"  {goal:18s} {pair['true']:5d} true {pair['false']:5d} false{pooled}")
-    for name, method in fitted.methods.items():
-        shares = {key: value for key, value in method.left_out.items() if not isinstance(value, list)}
-        print(f"{name}, on houses left out: " + ", ".join(f"{key} {value}" for key, value in shares.items()))
-        for rows in method.left_out.values():
-            for row in rows if isinstance(rows, list) else ():
-                print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
+    shares = {key: value for key, value in method["left_out"].items() if key != "by_probability"}
+    print(f"{NAIVE_BAYES}, on houses left out: " + ", ".join(f"{key} {value}" for key, value in shares.items()))
+    for row in method["left_out"]["by_probability"]:
+        print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))

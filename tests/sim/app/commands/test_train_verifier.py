@@ -125,12 +125,11 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     episodes = [Episode(f"fenced_{i}", "seats", "sofa", Pose(-0.3, 0.4 * i, 0.0)) for i in range(3)]
     write_split(folder, episodes, {"seats": {}}, version="0.0.1")
     asked: list[tuple[bool, int]] = []
-    accepts = candidates.RecordingVerifier.accepts
+    accepts = candidates.CandidateRecorder.accepts
 
-    def spy(self: candidates.RecordingVerifier, goal: str, features: Features) -> bool:
+    def spy(self: candidates.CandidateRecorder, goal: str, features: Features) -> bool:
         before = len(self.candidates)
         answer = accepts(self, goal, features)
-        assert self.agent is not None
         near_enough = self.agent.approach is None or self.agent.approach.near_enough
         asked.append((near_enough, len(self.candidates) - before))
         return answer
@@ -138,7 +137,7 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     judged: list[object] = []
     judge = TargetSeeker.judge
     monkeypatch.setattr(TargetSeeker, "judge", lambda *args: judged.append(args) or judge(*args))
-    monkeypatch.setattr(candidates.RecordingVerifier, "accepts", spy)
+    monkeypatch.setattr(candidates.CandidateRecorder, "accepts", spy)
     exact = replace(KINDS["gt"], spec=replace(GroundTruthSegmenter.spec, needs_verification=True))
     monkeypatch.setattr(train_verifier, "find_segmentation", lambda *_: exact)
     monkeypatch.setattr(train_verifier, "make_segmenter", lambda *_, **__: GroundTruthSegmenter())
