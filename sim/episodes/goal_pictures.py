@@ -59,7 +59,7 @@ class GoalPictures:
         """Returns whether the room has another object with the same name, colour and material."""
         look = item.facts
         return any(
-            other is not item and other.room == item.room and other.facts == look
+            other is not item and other.room is item.room and other.facts == look
             for other in self._meaning.named((item.name,))
         )
 

@@ -17,6 +17,7 @@ from sim.core.errors import EpisodeError, HouseError
 from sim.core.vocabulary import NO_OBJECTS, in_words
 from sim.core.wishes import Beside, Wish
 from sim.gl import mujoco
+from sim.houses.house import Room
 from sim.houses.instance_facts import InstanceFacts, read_instance_facts
 from sim.houses.labels import Instance
 from sim.task.footprints import Footprint, Footprints, house_floors
@@ -41,7 +42,7 @@ class HouseObject:
         instance: the object.
         facts: what the house file says about it.
         outline: computes its footprint, which is None if nothing of it is rendered.
-        room_at: finds the room of a footprint: name and kind.
+        room_at: finds the room of a footprint; None: it is outside of all rooms.
     """
 
     def __init__(
@@ -49,7 +50,7 @@ class HouseObject:
         instance: Instance,
         facts: InstanceFacts,
         outline: Callable[[Instance], Footprint | None],
-        room_at: Callable[[Footprint], tuple[str, str]],
+        room_at: Callable[[Footprint], Room | None],
     ) -> None:
         self.instance, self.facts = instance, facts
         self._outline, self._room_at = outline, room_at
@@ -71,18 +72,14 @@ class HouseObject:
         return self.outline
 
     @cached_property
-    def _room(self) -> tuple[str, str]:
+    def room(self) -> Room | None:
+        """The room in which the middle of its footprint is; None: outside of all rooms."""
         return self._room_at(self.footprint)
-
-    @property
-    def room(self) -> str:
-        """Name of the room (`room_bedroom_00`); "": outside of all rooms."""
-        return self._room[0]
 
     @property
     def room_kind(self) -> str:
         """Kind of the room, such as `bedroom`; "": outside of all rooms."""
-        return self._room[1]
+        return "" if self.room is None else self.room.kind
 
     @property
     def size_m(self) -> float:
@@ -219,17 +216,14 @@ class Meaning:
             for other in self._of_names(names)
             if other is not item
             and other.outline is not None
-            and (other.room == item.room or other.instance.category in NO_OBJECTS)
+            and (other.room is item.room or other.instance.category in NO_OBJECTS)
             and abs(other.footprint.floor_z_m - item.footprint.floor_z_m) < 1.0
         ]
 
-    def _room_of(self, footprint: Footprint) -> tuple[str, str]:
+    def _room_of(self, footprint: Footprint) -> Room | None:
         x0, y0, x1, y1 = footprint.bounds_m
-        x_m, y_m = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
-        for room in self._world.rooms:
-            if abs(room.floor_z_m - footprint.floor_z_m) < 1.0 and room.contains(x_m, y_m):
-                return room.name, room.kind
-        return "", ""
+        storey = (room for room in self._world.rooms if abs(room.floor_z_m - footprint.floor_z_m) < 1.0)
+        return next((room for room in storey if room.contains(0.5 * (x0 + x1), 0.5 * (y0 + y1))), None)
 
     def _nothing_for(self, wish: Wish) -> str:
         same = self.named(wish.names)
