@@ -326,15 +326,3 @@ def enter_bits(seen, rows, cols, bits, counts):
     for i in range(rows.size):
         if counts[i]:
             seen[rows[i], cols[i]] |= bits[i]
-
-
-@njit(cache=True)
-def scores_of_category(semantic, category):
-    """Returns two float32 images: 1 where a pixel has the category, and 1 where it has another one (not 0)."""
-    target, other = np.empty(semantic.shape, np.float32), np.empty(semantic.shape, np.float32)
-    for r in range(semantic.shape[0]):
-        for c in range(semantic.shape[1]):
-            here = semantic[r, c]
-            target[r, c] = np.float32(here == category)
-            other[r, c] = np.float32((here != 0) & (here != category))
-    return target, other

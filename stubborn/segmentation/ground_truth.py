@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.interface import MPCAT40, Observation, Scores, SegmenterSpec, category_id
-from stubborn.kernels.frames import scores_of_category
 
 STRIDE_PX = 4
 """Edge of the image block of one posterior."""
@@ -27,7 +26,9 @@ class GroundTruthSegmenter:
         Raises:
             ConfigError: the goal is not a category of mpcat40, or is void.
         """
-        return Scores(*scores_of_category(observation["semantic"], np.uint8(category_id(goal))))
+        semantic = observation["semantic"]
+        target = semantic == category_id(goal)
+        return Scores(target.astype(np.float32), ((semantic != 0) & ~target).astype(np.float32))
 
     def categories(self, observation: Observation) -> NDArray[np.uint8]:
         """Returns the category of each pixel, mpcat40 ids (h, w)."""
