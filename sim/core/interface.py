@@ -257,7 +257,8 @@ def reads_truth(sensor: Any) -> bool:
     """
     if isinstance(sensor, str):
         return sensor in ("semantic", SEMANTIC_MAP) or sensor.endswith("_semantic")
-    if getattr(sensor, "name", "") in (*POSE_SENSORS, *ROBOT_SENSORS, *GOAL_SENSORS) and _is_standard(sensor):
+    is_standard = type(sensor).__module__.startswith("sim.sensors.")  # a user's sensor may have the same name
+    if is_standard and getattr(sensor, "name", "") in (*POSE_SENSORS, *ROBOT_SENSORS, *GOAL_SENSORS):
         return False
     images = {name.rpartition(":")[2] for name in getattr(sensor, "images", ())}  # `left:semantic` of a camera `left`
     declared = {*images, *getattr(sensor, "reads", ())}
@@ -269,11 +270,6 @@ def _require_tuples(spec: object, *names: str) -> None:
     for name in names:
         if isinstance(value := getattr(spec, name), str):
             raise ConfigError(f"{type(spec).__name__}.{name} must be a tuple of names, got '{value}'.")
-
-
-def _is_standard(sensor: Any) -> bool:
-    """Returns whether a sensor is one of the simulator's own; a user's sensor may have the same name."""
-    return type(sensor).__module__.startswith("sim.sensors.")
 
 
 class Scores(NamedTuple):

@@ -23,7 +23,7 @@ from sim.core.interface import MPCAT40_ID, CameraModel
 from sim.env.scene import Scene
 from sim.gl import mujoco
 from sim.houses.labels import RENDERED_GROUPS, collidable_geoms, geoms_of, opacity, rendered_geoms
-from sim.houses.proposals import geom_box
+from sim.houses.proposals import box_around, geom_box
 from sim.renderer.lamps import Lamps
 from sim.renderer.occlusion import Visibility
 from sim.renderer.opengl import Z_FAR_M, Z_NEAR_M, SharedContext, free_frame_buffers, make_frame_buffer
@@ -276,8 +276,7 @@ def _is_inside_visible(world: World, geom: int) -> bool:
     visible = np.intersect1d(np.array(own, np.int64), np.flatnonzero(rendered_geoms(model)))
     if not visible.size or 2.0 * model.geom_aabb[geom, 3:].min() < _PANE_M:
         return False
-    boxes = np.array([geom_box(model, data, geom) for geom in visible.tolist()])
-    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+    low, high = box_around(model, data, visible.tolist())
     other_low, other_high = geom_box(model, data, geom)
     both = np.prod(np.maximum(np.minimum(high, other_high) - np.maximum(low, other_low), 0.0))
     return bool(both >= _INSIDE * np.prod(other_high - other_low))

@@ -205,12 +205,9 @@ def storeys(house: House) -> list[House]:
             geoms = np.flatnonzero(model.geom_bodyid == compiled.id)
             if geoms.size and other[geoms].all():
                 storey.delete(body)
-        for geom in list(storey.worldbody.geoms):
-            if not low_m < geom.pos[2] <= high_m:
-                storey.delete(geom)
-        for site in list(storey.worldbody.sites):
-            if not low_m < site.pos[2] <= high_m:
-                storey.delete(site)
+        for element in (*storey.worldbody.geoms, *storey.worldbody.sites):
+            if not low_m < element.pos[2] <= high_m:
+                storey.delete(element)
         cut.append(replace(house, source=storey, checksum=None))
     return cut
 

@@ -64,10 +64,9 @@ class Plan:
         """Returns rectangles that cover the cells of this plan that are in one of some rectangles."""
         mask = np.zeros_like(self.mask)
         for rect in rects:
-            (x0, x1), (y0, y1) = (
-                np.clip(np.rint((np.array(ends) - origin) / PLAN_CELL_M), 0, None).astype(int).tolist()
-                for ends, origin in (((rect.x0, rect.x1), self.origin_m[0]), ((rect.y0, rect.y1), self.origin_m[1]))
-            )
+            corners_m = np.array([(rect.x0, rect.y0), (rect.x1, rect.y1)])
+            cells = np.rint((corners_m - np.array(self.origin_m)) / PLAN_CELL_M)
+            (x0, y0), (x1, y1) = np.maximum(cells, 0).astype(int).tolist()
             mask[x0:x1, y0:y1] = True
         return Plan(self.origin_m, mask & self.mask).rectangles(covered=0.99)
 

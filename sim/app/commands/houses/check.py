@@ -109,12 +109,9 @@ def main(args: Args) -> int:
         tries = f", {checked.tries} tries" if fresh else ""
         faults = display.counted(len(checked.faults), "fault")
         print(f"{checked.name}: {faults}{tries}, {checked.seconds:.2f} s", flush=True)
-        for note in checked.notes:
-            print(f"    note: {note}")
-        for reason in checked.rejects:
-            print(f"    rejected: {reason}")
-        for fault in checked.faults:
-            print(f"    fault: {fault}")
+        for kind, sentences in (("note", checked.notes), ("rejected", checked.rejects), ("fault", checked.faults)):
+            for sentence in sentences:
+                print(f"    {kind}: {sentence}")
     faulty = sum(bool(checked.faults) for checked in results)
     all_tries = [checked.tries for checked in results]
     tries = f"tries: mean {statistics.mean(all_tries):.2f}, most {max(all_tries)}; " if fresh else ""
