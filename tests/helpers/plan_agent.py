@@ -30,7 +30,7 @@ class PlanAgent(StubbornAgent):
     def _map(self, observation: Observation, pose: Pose) -> Sighting:
         """Enters the look from the present pose into the map."""
         episode = self._episode
-        look = episode.camera.look(episode.robot.pose, episode.goal, self.navmap, pose, self.navmap.goals_seen)
+        look = episode.camera.look(episode.robot.pose, episode.goal, self.navmap, pose)
         episode.see(look)
         if look.touched is not None:
             self.navmap.grow_known(*look.touched)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -28,6 +28,7 @@ class MapLayers(Protocol):
     seen_obstacle: NDArray[np.bool_]
     seen_at_eye_level: NDArray[np.bool_]
     score_max: NDArray[np.float32]
+    goals_seen: NDArray[np.uint32]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,23 +75,19 @@ class _Scratch:
 
     flags: NDArray[np.uint8]
     touched: NDArray[np.int32]
-    nothing: NDArray[np.uint32] = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.nothing = np.zeros(self.flags.shape, np.uint32)
 
 
 class PlanCamera:
-    """The camera of one robot in one plan. It remembers which floor it has seen since `reset`."""
+    """The camera of the default robot in one plan. It remembers which floor it has seen since `reset`."""
 
-    def __init__(self, plan: Plan, camera: CameraModel | None = None, config: SightConfig | None = None) -> None:
+    def __init__(self, plan: Plan, config: SightConfig | None = None) -> None:
         """Prepares the rays.
 
         Raises:
             ConfigError: the image has more than 128 rows after the stride.
         """
         self.plan = plan
-        self.camera = camera or CameraModel()
+        self.camera = CameraModel()
         self.config = config or SightConfig()
         stride, focal_px = self.config.stride_px, self.camera.focal_px
         u_px = np.arange(stride // 2, self.camera.width_px, stride)
@@ -117,14 +114,7 @@ class PlanCamera:
         """Area of the floor that was in view."""
         return self._seen_cells * self.plan.frame.cell_m**2
 
-    def look(
-        self,
-        pose: Pose,
-        goal: str | None,
-        layers: MapLayers,
-        map_pose: Pose,
-        goals_seen: NDArray[np.uint32] | None = None,
-    ) -> Look:
+    def look(self, pose: Pose, goal: str | None, layers: MapLayers, map_pose: Pose) -> Look:
         """Looks from a pose and enters the frame into the layers of a map.
 
         Args:
@@ -132,7 +122,6 @@ class PlanCamera:
             goal: the goal category; None: no goal.
             layers: of the map; they are changed.
             map_pose: the same pose in the frame of the map.
-            goals_seen: (rows, cols) of the map; bit g is set where goal category g is in view.
         """
         frame, config, scratch = layers.frame, self.config, self._scratch_for(layers.frame)
         pixels = np.zeros(len(GOAL_CATEGORIES), np.int64)
@@ -161,7 +150,7 @@ class PlanCamera:
             scratch.flags,
             scratch.touched,
             self.seen_floor,
-            scratch.nothing if goals_seen is None else goals_seen,
+            layers.goals_seen,
             pixels,
         )
         row_0, row_1, col_0, col_1 = enter_frame(

@@ -181,7 +181,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
     def camera(self, number: int) -> PlanCamera:
         """Returns the camera of a plan."""
         if self._camera is None or self._camera[0] != number:
-            self._camera = number, PlanCamera(self._read(self.files[number]), config=self.config.sight)
+            self._camera = number, PlanCamera(self._read(self.files[number]), self.config.sight)
         return self._camera[1]
 
     def reset(
@@ -364,7 +364,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
     def _look(self) -> None:
         """Enters the frame from the present pose into the map."""
         episode = self.episode
-        look = episode.camera.look(episode.robot.pose, episode.goal, self.navmap, self._pose, self.navmap.goals_seen)
+        look = episode.camera.look(episode.robot.pose, episode.goal, self.navmap, self._pose)
         if look.touched is not None:
             self.navmap.grow_known(*look.touched)
         episode.see(look)

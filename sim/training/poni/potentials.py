@@ -121,7 +121,7 @@ def samples_of(plan: Plan, config: SampleConfig, seed: int) -> Iterator[Sample]:
             if moved:
                 mark_visited(navmap, before, pose, plan.radius_m, CollisionConfig())
             before = pose
-            look = camera.look(world, None, navmap, pose, navmap.goals_seen)
+            look = camera.look(world, None, navmap, pose)
             if look.touched is not None:
                 navmap.grow_known(*look.touched)
             if step in chosen:

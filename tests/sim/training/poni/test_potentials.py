@@ -91,7 +91,7 @@ def test_each_frontier_cell_has_the_potential_of_its_place_in_the_plan(plan: Pla
     start, camera, navmap = Pose(-3.0, 1.0, 0.7), PlanCamera(plan), _empty()
     for turns in range(3):
         world = Pose(start.x_m, start.y_m, start.yaw_rad + turns * math.radians(30.0))
-        look = camera.look(world, None, navmap, world.relative_to(start), navmap.goals_seen)
+        look = camera.look(world, None, navmap, world.relative_to(start))
         navmap.grow_known(*look.touched)  # type: ignore[misc]
     navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
     here = ground(navmap, Pose(0.0, 0.0, math.radians(60.0)), navmap.known_window(20))
