@@ -60,7 +60,7 @@ def require_action(value: object, allowed: Sequence[Action], remedy: str = "") -
     """Returns the action of an integer; raises ConfigError, which ends with the remedy, if it is not allowed."""
     action = as_action(value)
     if action is None or action not in allowed:
-        names = ", ".join(f"{int(each)} {each.name}" for each in allowed)
+        names = ", ".join(f"{int(known)} {known.name}" for known in allowed)
         raise ConfigError(f"An action is one of {names}; got {reprlib.repr(value)}.{remedy}")
     return action
 

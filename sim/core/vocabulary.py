@@ -73,8 +73,8 @@ class Vocabulary:
 
     def categories_of(self, names: frozenset[str]) -> tuple[str, ...]:
         """Returns the categories of some names, in the order of `MPCAT40`."""
-        wanted = {category for name in names for category in self.categories.get(name, ())}
-        return tuple(category for category in MPCAT40 if category in wanted)
+        of_names = {category for name in names for category in self.categories.get(name, ())}
+        return tuple(category for category in MPCAT40 if category in of_names)
 
     def main_category(self, names: frozenset[str]) -> str:
         """Returns the category that most of some names have; of a name with several, the first counts most."""

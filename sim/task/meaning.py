@@ -140,16 +140,16 @@ class Meaning:
         Raises:
             EpisodeError: there is none; the message says what there is.
         """
-        found = self.candidates(wish)
-        if wish.count is not None and len(found) != wish.count:
-            raise EpisodeError(f"{self._house} has {len(found)} objects for '{wish.text}', not {wish.count}.")
-        if wish.size is not None and found:
-            extreme = max if wish.size == "largest" else min
-            best = extreme(item.size_m for item in found)
-            found = tuple(item for item in found if item.size_m == best)
-        if not found:
+        candidates = self.candidates(wish)
+        if wish.count is not None and len(candidates) != wish.count:
+            raise EpisodeError(f"{self._house} has {len(candidates)} objects for '{wish.text}', not {wish.count}.")
+        if not candidates:
             raise EpisodeError(self._nothing_for(wish))
-        return tuple(item.instance for item in found)
+        if wish.size is not None:
+            extreme = max if wish.size == "largest" else min
+            best_m = extreme(item.size_m for item in candidates)
+            candidates = tuple(item for item in candidates if item.size_m == best_m)
+        return tuple(item.instance for item in candidates)
 
     def candidates(self, wish: Wish) -> tuple[HouseObject, ...]:
         """Returns the objects that satisfy all conditions of a wish but its size."""

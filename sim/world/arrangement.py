@@ -2,7 +2,7 @@
 
 Sources: NKBA Kitchen Planning Guidelines (work triangle, aisles, worktop next to appliances, 30 in in front of a
 toilet as recommended; here 0.6 m, the 24 in that the IRC asks for at least within 3 in); Neufert, Architects' Data
-(0.6 m beside a bed, seats that face each other or a focus, wardrobes away from windows). Everything is measured on the
+(0.6 m next to a bed, seats that face each other or a focus, wardrobes away from windows). Everything is measured on the
 compiled model: instances with their everyday names, their boxes, and the heading of their bodies.
 """
 
@@ -140,9 +140,9 @@ def _kitchen(inside: Sequence[Standing]) -> list[str]:
             clauses.append(f"has no worktop next to the {kind}")
     fronts = list(work_centres(inside).values())
     if len(fronts) == 3:
-        triangle_m = sum(math.dist(a, b) for a, b in itertools.combinations(fronts, 2))
-        longest_m = max(math.dist(a, b) for a, b in itertools.combinations(fronts, 2))
-        least_m = MIN_LINE_M if triangle_m - 2 * longest_m < 0.1 else MIN_TRIANGLE_M
+        legs_m = list(itertools.starmap(math.dist, itertools.combinations(fronts, 2)))
+        triangle_m = sum(legs_m)
+        least_m = MIN_LINE_M if triangle_m - 2 * max(legs_m) < 0.1 else MIN_TRIANGLE_M
         if not least_m - SLACK_M <= triangle_m <= MAX_TRIANGLE_M + SLACK_M:
             clauses.append(
                 f"has a work triangle of {triangle_m:.1f} m, which must be {least_m:.1f} to {MAX_TRIANGLE_M:.1f} m"
@@ -166,11 +166,11 @@ def _work_units(inside: Sequence[Standing]) -> dict[str, Standing]:
         "sink": [item for item in inside if item.category == "sink"],
         "cooker or hob": [item for item in inside if item.name in ("hob", "cooker")],
     }
-    return {kind: found[0] for kind, found in kinds.items() if found}
+    return {kind: units[0] for kind, units in kinds.items() if units}
 
 
 def work_centres(inside: Sequence[Standing]) -> dict[str, NDArray[np.float64]]:
-    """Returns where one stands at the fridge, the sink and the cooker or hob: the middles (2,) of their fronts, metres.
+    """Returns the middles (2,) of the fronts of the fridge, the sink and the cooker or hob, metres.
 
     The front of a sink or a hob is that of the worktop that holds it.
     """

@@ -23,11 +23,10 @@ from jaxtyping import Float32
 
 from sim.core.interface import MPCAT40, ConfigError, SegmenterSpec
 from sim.core.reading import Number, read_json
+from stubborn.detection.verification import DEFAULT_KIND
 
 FOLDER = Path(__file__).parent / "fusions"
 """Folder of the shipped parameters."""
-DEFAULT_KIND = "rednet"
-"""Kinds without parameters of their own use those of this kind."""
 SURFACES = ("wall", "floor", "ceiling")
 """Categories of the surfaces behind, below and above every object."""
 IS_SURFACE = np.array([name in SURFACES for name in MPCAT40[1:]])
@@ -127,7 +126,7 @@ def read_fusion(file: Path) -> Fusion:
 
 
 def fusion_for(spec: SegmenterSpec, file: Path | None = None) -> Fusion:
-    """Returns the parameters for a segmenter: those in `file`, or the shipped ones of its kind.
+    """Returns the parameters for a segmenter: those in `file`, or the shipped ones of its kind, else of `DEFAULT_KIND`.
 
     Raises:
         ConfigError: the file is missing or broken.

@@ -21,7 +21,7 @@ from stubborn.detection.classifiers import Features, NaiveBayes
 FOLDER = Path(__file__).parent / "verifiers"
 """Folder of the shipped parameters."""
 DEFAULT_KIND = "rednet"
-"""Kinds without parameters of their own use those of this kind, because it is a network."""
+"""Kinds without parameters of their own use those of this kind, because it is a network; also in fusion."""
 NAIVE_BAYES = "naive-bayes"
 """The method of the paper."""
 ACCEPT_ALL = "none"

@@ -276,9 +276,9 @@ def _look_at(
     middle, eye_m = (low + high) / 2, VIEWS_CAMERA.height_m
     aim = np.array([middle[0], middle[1], np.clip(eye_m, low[2] + 0.02, high[2] - 0.02)])
     away_m = np.hypot(*(places_m - aim[:2]).T)
-    wanted_m = NEAREST_LOOK_M + LOOK_SIZES * float((high - low)[:2].max())
+    best_m = NEAREST_LOOK_M + LOOK_SIZES * float((high - low)[:2].max())
     hit = np.zeros(1, np.int32)
-    for x, y in places_m[np.argsort(np.abs(away_m - wanted_m))].tolist():
+    for x, y in places_m[np.argsort(np.abs(away_m - best_m))].tolist():
         eye = np.array([x, y, eye_m])
         mujoco.mj_ray(model, data, eye, aim - eye, None, 1, -1, hit, None)
         if int(hit[0]) in instance.geom_ids:

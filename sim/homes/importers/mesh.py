@@ -130,7 +130,7 @@ def _import(file: Path, rules: Mapping[str, str], axis: Up, config: MeshConfig, 
     except HouseError as error:
         said = str(error)
         raise type(error)(said if said.startswith("Mesh ") else f"Mesh '{file}': {said}") from None
-    table = {**{rule: rules[rule] for rule in rules}, **rules_of(proposals)}
+    table = {**rules, **rules_of(proposals)}
     return MeshScene(house, table)
 
 

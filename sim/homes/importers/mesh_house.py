@@ -338,9 +338,9 @@ class _Builder:
                               size=_rounded(*(0.5 * (box[3:] - box[:3])))) for box in parts.boxes_m]  # fmt: skip
         made += [body.add_geom(self._hit, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name) for name in parts.hulls]
         self.collision_geoms += len(made)
-        mass = item.mass_kg
-        for geom in made if mass is not None else ():
-            geom.mass = (mass or 0.0) / len(made)
+        if item.mass_kg is not None:
+            for geom in made:
+                geom.mass = item.mass_kg / len(made)
 
     def _parts_of(self, item: MeshObject, budget: int) -> _Parts:
         """Returns the parts of the shape of an object; computed once for objects of one shape that collide alike."""

@@ -98,8 +98,8 @@ class Sketch:
 
     def draw_opening(self, *kinds: OpeningKind, bare: bool = False) -> Opening | None:
         """Draws one of the house's openings of these kinds, if `bare` one without a leaf; None if there is none."""
-        found = [o for o in self.floor.openings if o.kind in kinds and not (bare and o.leaf is not None)]
-        return found[int(self.rng.integers(len(found)))] if found else None
+        openings = [o for o in self.floor.openings if o.kind in kinds and not (bare and o.leaf is not None)]
+        return openings[int(self.rng.integers(len(openings)))] if openings else None
 
     def move_into(self, opening: Opening, at_m: float | None = None) -> float:
         """Moves the sketch to a position along an opening, or to its middle; its +x then crosses the wall.
@@ -116,9 +116,9 @@ class Sketch:
         return high - low
 
     def draw_hinge(self, width_m: float, angle_rad: float) -> tuple[tuple[float, float], float]:
-        """Returns place and yaw, in the sketch's frame, of a leaf that is open by an angle in the doorway at it.
+        """Returns place (metres) and yaw, in the sketch's frame, of a door leaf that is open by an angle.
 
-        Its hinge is at either jamb, and it opens to either side.
+        The doorway is at the sketch. The hinge is at a random jamb, and the leaf opens to a random side.
         """
         hinge, into = (1 if self.rng.random() < 0.5 else -1), (1 if self.rng.random() < 0.5 else -1)
         # The closed leaf points along -hinge * y from its hinge; it opens towards into * x.
@@ -162,14 +162,14 @@ Design = Callable[[Sketch], bool]
 def box(
     x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], look: Look, *, solid: bool = True
 ) -> Geom:
-    """Returns the box with these ranges."""
+    """Returns the box with these ranges along each axis, metres."""
     half = tuple(round(0.5 * (b - a), 4) for a, b in (x, y, z))
     cx, cy, cz = (round(0.5 * (a + b), 4) for a, b in (x, y, z))
     return Geom("box", half, (cx, cy, cz), look, solid=solid)
 
 
 def rod(a: tuple[float, float, float], b: tuple[float, float, float], radius_m: float, look: Look) -> Geom:
-    """Returns the cylinder from a to b."""
+    """Returns the cylinder from `a` to `b`, points in metres."""
     (ax, ay, az), (dx, dy, dz) = a, (b[0] - a[0], b[1] - a[1], b[2] - a[2])
     length = math.sqrt(dx * dx + dy * dy + dz * dz)
     tilt, turn = math.acos(dz / length), math.atan2(dy, dx)
@@ -181,7 +181,7 @@ def rod(a: tuple[float, float, float], b: tuple[float, float, float], radius_m: 
 
 
 def post(x: float, y: float, z: tuple[float, float], radius_m: float, look: Look) -> Geom:
-    """Returns an upright cylinder."""
+    """Returns the upright cylinder at (x, y) with this range of heights, metres."""
     return rod((x, y, z[0]), (x, y, z[1]), radius_m, look)
 
 
