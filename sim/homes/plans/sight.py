@@ -69,14 +69,6 @@ class Look:
     """Rectangle of the map that holds all points of the frame; None: the frame has no points."""
 
 
-@dataclass(eq=False)
-class _Scratch:
-    """Memory of the kernels for a map of one shape."""
-
-    flags: NDArray[np.uint8]
-    touched: NDArray[np.int32]
-
-
 class PlanCamera:
     """The camera of the default robot in one plan. It remembers which floor it has seen since `reset`."""
 
@@ -100,7 +92,9 @@ class PlanCamera:
         self._left = (0.5 * self.camera.width_px - (u_px + 0.5)) / focal_px
         self._up = (0.5 * self.camera.height_px - (v_px + 0.5)) / focal_px
         self._span_goal = plan.span_goals()
-        self._scratch: _Scratch | None = None
+        self._flags = np.zeros((0, 0), np.uint8)
+        """Flags of the cells of a map, 0 between two looks; made at the first look into a map of another shape."""
+        self._touched = np.zeros(4 * self._left.size * self._up.size, np.int32)
         self.reset()
 
     def reset(self) -> None:
@@ -123,7 +117,9 @@ class PlanCamera:
             layers: of the map; they are changed.
             map_pose: the same pose in the frame of the map.
         """
-        frame, config, scratch = layers.frame, self.config, self._scratch_for(layers.frame)
+        frame, config = layers.frame, self.config
+        if self._flags.shape != frame.shape:
+            self._flags = np.zeros(frame.shape, np.uint8)
         pixels = np.zeros(len(GOAL_CATEGORIES), np.int64)
         number = _NO_GOAL if goal is None else GOAL_CATEGORIES.index(goal)
         count, new = cast_rays(
@@ -147,15 +143,15 @@ class PlanCamera:
             number,
             _place(map_pose, frame),
             frame.cell_m,
-            scratch.flags,
-            scratch.touched,
+            self._flags,
+            self._touched,
             self.seen_floor,
             layers.goals_seen,
             pixels,
         )
         row_0, row_1, col_0, col_1 = enter_frame(
-            scratch.flags,
-            scratch.touched,
+            self._flags,
+            self._touched,
             count,
             layers.frames_in_view,
             layers.obstacle_evidence,
@@ -170,13 +166,6 @@ class PlanCamera:
         touched = None if row_1 < 0 else (slice(row_0, row_1 + 1), slice(col_0, col_1 + 1))
         shares = pixels / (self._left.size * self._up.size)
         return Look(shares, 0.0 if goal is None else float(shares[number]), touched)
-
-    def _scratch_for(self, frame: GridFrame) -> _Scratch:
-        if self._scratch is None or self._scratch.flags.shape != frame.shape:
-            self._scratch = _Scratch(
-                np.zeros(frame.shape, np.uint8), np.zeros(4 * self._left.size * self._up.size, np.int32)
-            )
-        return self._scratch
 
 
 def _place(pose: Pose, frame: GridFrame) -> tuple[float, float, float, float]:

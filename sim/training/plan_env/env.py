@@ -252,11 +252,11 @@ class PlanEnv(gymnasium.Env[Any, Any]):
                     raise
         raise EpisodeError(f"None of the {len(self.files)} plans has a '{goal}' that can be reached.")
 
-    def _number(self, action: Any) -> int:
+    def _number(self, plan: Any) -> int:
         """Returns the number of a plan; raises ConfigError if the plan does not exist."""
-        if not isinstance(action, (int, np.integer)) or not 0 <= action < len(self.files):
-            raise ConfigError(f"options['plan'] must be 0 to {len(self.files) - 1}, got {action!r}.")
-        return int(action)
+        if not isinstance(plan, (int, np.integer)) or not 0 <= plan < len(self.files):
+            raise ConfigError(f"options['plan'] must be 0 to {len(self.files) - 1}, got {plan!r}.")
+        return int(plan)
 
     @property
     def _terminated(self) -> bool:
