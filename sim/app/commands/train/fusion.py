@@ -20,6 +20,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -29,7 +30,6 @@ from sim.app.composition.segmenters import find_segmentation, make_segmenter
 from sim.app.evaluation.workers import RunnerSpec
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
-from sim.core.reading import convert
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
@@ -106,7 +106,8 @@ class TrackRunner:
         self._env.close()
 
 
-def _print(quality: Mapping[str, object]) -> None:
+def _print(quality: Mapping[str, Any]) -> None:
+    """Prints the quality of probabilities, and a line for each bin of the calibration."""
     print("  " + ", ".join(f"{name} {value}" for name, value in quality.items() if name != "calibration"))
-    for row in convert(quality["calibration"], list[dict[str, int | float]], where="The calibration"):
+    for row in quality["calibration"]:
         print("  " + ", ".join(f"{name} {value}" for name, value in row.items()))
