@@ -129,8 +129,8 @@ def _place_hearth(layout: RoomLayout, source: FurnitureSource, sofa: Placement) 
         return False
     keep_from_fire(layout, placed)
     screen = source.make("tv_monitor", "tv_wall")
-    bottom_m = max(1.1, hearth.size_m[2] + 0.12)
-    if screen is None or not _hang_screen(layout, source, screen, side, placed, bottom_m):
+    middle, bottom_m = 0.5 * sum(placed.rect.span(side)), max(1.1, hearth.size_m[2] + 0.12)
+    if screen is None or not hang_screen(layout, source, screen, side, middle, bottom_m):
         hang_above(layout, source, placed, "picture" if source.chance(0.6) else "mirror")
     return True
 
@@ -184,7 +184,7 @@ def _place_screen(layout: RoomLayout, source: FurnitureSource, sofa: Placement) 
             continue
         if mount == "wall":
             bottom_m = max(0.85, (cabinet.item.size_m[2] + 0.12) if cabinet else 0.95)
-            if _hang_screen(layout, source, screen, side, cabinet or sofa, bottom_m):
+            if hang_screen(layout, source, screen, side, 0.5 * sum((cabinet or sofa).rect.span(side)), bottom_m):
                 return True
         elif cabinet is not None and put_on_surface(layout, source.rng, cabinet, screen, face=0.0, back=True):
             return True
@@ -192,13 +192,6 @@ def _place_screen(layout: RoomLayout, source: FurnitureSource, sofa: Placement) 
     if floor_screen is None or floor_screen.mount != "floor":
         return False
     return put_near(layout, floor_screen, side, middle, front_m=SCREEN_FRONT_M) is not None
-
-
-def _hang_screen(
-    layout: RoomLayout, source: FurnitureSource, screen: Item, side: Side, host: Placement, bottom_m: float
-) -> bool:
-    """Hangs a screen on a wall in line with another item."""
-    return hang_screen(layout, source, screen, side, 0.5 * sum(host.rect.span(side)), bottom_m) is not None
 
 
 def reading_corner(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
