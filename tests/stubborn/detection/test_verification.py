@@ -67,8 +67,9 @@ def test_the_classifiers_are_judged_on_candidates_of_houses_left_out():
 
 def test_the_method_none_accepts_all_and_unknown_methods_are_refused(tmp_path: Path):
     assert isinstance(verifier_for(IMPERFECT, method="none"), AcceptAll)
-    with pytest.raises(ConfigError, match=r"Unknown verification 'hunch'\. Available: naive-bayes, none"):
-        verifier_for(IMPERFECT, method="hunch")
+    for spec in (IMPERFECT, TRUE):
+        with pytest.raises(ConfigError, match=r"Unknown verification 'hunch'\. Available: naive-bayes, none"):
+            verifier_for(spec, method="hunch")
     with pytest.raises(ConfigError, match=wording.CANNOT_BE_READ):
         verifier_for(IMPERFECT, tmp_path / "none.json")
 
