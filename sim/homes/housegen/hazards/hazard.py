@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
@@ -73,24 +73,20 @@ class PlacedHazard:
         builder.add_box_site(f"hazard_{self.kind}_{number:02d}", (*low, 0.0), (*high, SITE_HEIGHT_M))
 
 
+@dataclass(eq=False)
 class Sketch:
     """A hazard that is being assembled around a pose: its origin lies on a path, its +x points along the path."""
 
-    def __init__(
-        self,
-        kind: str,
-        x_m: float,
-        y_m: float,
-        yaw_rad: float,
-        rng: np.random.Generator,
-        pool: Pool,
-        looks: Mapping[str, Look],
-        floor: FloorMap,
-    ) -> None:
-        self.kind, self.x_m, self.y_m, self.yaw_rad = kind, x_m, y_m, yaw_rad
-        self.rng, self.looks, self.floor = rng, looks, floor
-        self._pool: Pool = pool
-        self._parts: list[Part] = []
+    kind: str
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    rng: np.random.Generator
+    pool: Pool
+    looks: Mapping[str, Look]
+    """Looks that all hazards of a house share: `frame` and `dots`."""
+    floor: FloorMap
+    _parts: list[Part] = field(default_factory=list)
 
     def align(self) -> None:
         """Turns the sketch to the nearest direction of the walls."""
@@ -143,7 +139,7 @@ class Sketch:
 
     def look(self, material: str) -> Look:
         """Draws a look of a material from the pool of the house."""
-        return look(material, self.rng, self._pool)
+        return look(material, self.rng, self.pool)
 
     def finish(self) -> PlacedHazard:
         """Returns the hazard."""
