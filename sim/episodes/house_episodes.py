@@ -158,12 +158,11 @@ class StartDrawer:
         if self._lookout is not None:
             headings_rad = quadrant_headings(number, self._house, self._seed)
             return self._draw_hidden(self._lookout, ask, headings_rad, rng)
-        drawn = self._draw_once(ask, (-math.pi, math.pi), rng)
         for _ in range(MAX_REDRAWS):
-            if drawn.meets_rule:
-                break
             drawn = self._draw_once(ask, (-math.pi, math.pi), rng)
-        return drawn
+            if drawn.meets_rule:
+                return drawn
+        return self._draw_once(ask, (-math.pi, math.pi), rng)
 
     def close(self) -> None:
         """Frees the renderer."""

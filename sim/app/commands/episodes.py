@@ -106,8 +106,7 @@ def main(args: Args) -> int:
             flush=True,
         )
     most = {house: asks.most for house, asks in goals.items() if asks.most is not None}
-    per_house = {house: min(recipe.per_house, most.get(house, recipe.per_house)) for house in files}
-    count = args.episodes if args.episodes is not None else sum(per_house.values())
+    count = args.episodes or sum(min(recipe.per_house, most.get(house, recipe.per_house)) for house in files)
     order = balanced_goals({house: asks.asks for house, asks in goals.items()}, count, most)
     episodes = draw_episodes(args, order)
     write_split(

@@ -23,6 +23,8 @@ from stubborn.detection.evidence import EvidenceConfig
 from stubborn.detection.fusion import IS_SURFACE, SURFACES, Fusion
 
 FOLDS = 5
+STEPS = 300
+"""Steps of Adam."""
 MIN_PIXELS = 40
 """Tracks with fewer pixels are left out."""
 TRUE_SHARE = 0.25
@@ -83,12 +85,11 @@ def samples_of(log: Sequence[Mapping[str, Any]]) -> list[Sample]:
     return result
 
 
-def fit(samples: Sequence[Sample], *, steps: int = 300) -> Fusion:
+def fit(samples: Sequence[Sample]) -> Fusion:
     """Returns the parameters of highest posterior probability.
 
     Args:
         samples: see `samples_of`.
-        steps: number of steps of Adam.
 
     Raises:
         ConfigError: there are fewer than 100 samples.
@@ -108,7 +109,7 @@ def fit(samples: Sequence[Sample], *, steps: int = 300) -> Fusion:
     for parameter in free.values():
         parameter.requires_grad_(True)
     optimizer = torch.optim.Adam(free.values(), lr=0.05)
-    for _ in range(steps):
+    for _ in range(STEPS):
         optimizer.zero_grad()
         loss = torch.nn.functional.cross_entropy(data.log_odds(free), data.category)
         (loss + OFFSET_PRIOR * (free["offsets"] ** 2).sum() / len(samples)).backward()
