@@ -34,6 +34,7 @@ from tools.research.paper_reasons import EPISODES, reasons
 from tools.research.result_archive import (
     ARCHIVE,
     CHECKSUM_DIGITS,
+    ROOT,
     VERSION,
     ArchivedRun,
     pack,
@@ -56,6 +57,7 @@ from tools.research.result_tables import (
     known_quantities,
     main,
     motion_texts,
+    other_tables,
     paper_page,
     read_csv,
     result_record,
@@ -82,21 +84,25 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Mapping[RunKey, ArchivedRu
 
 
 @pytest.fixture(scope="module")
-def motions(runs: Mapping[RunKey, ArchivedRun]) -> dict[str, str]:
-    return motion_texts(next(iter(runs.values())).run.path.parent)
+def others(runs: Mapping[RunKey, ArchivedRun]) -> dict[str, dict[str, str]]:
+    return other_tables(next(iter(runs.values())).run.path.parent, runs)
 
 
 def test_the_tables_of_the_pages_are_rows_of_the_shipped_csv_files_and_sentences_quote_only_these(
-    motions: Mapping[str, str],
+    others: Mapping[str, Mapping[str, str]],
 ) -> None:
     results = read_csv(TABLES / RESULTS)
-    tables = [*motions.values(), (TABLES / PAPER).read_text(encoding="utf-8")]
-    known = known_quantities(results, read_csv(TABLES / COMPARISONS), read_csv(TABLES / PUBLISHED), tables)
-    for name, texts in tables_by_page(results, motions).items():
+    tables = [text for texts in others.values() for text in texts.values()]
+    tables.append((TABLES / PAPER).read_text(encoding="utf-8"))
+    compared = read_csv(TABLES / COMPARISONS)
+    known = known_quantities(results, compared, read_csv(TABLES / PUBLISHED), tables)
+    for name, texts in tables_by_page(results, compared, others).items():
         page = (DOCS / name).read_text(encoding="utf-8")
         assert texts, name
         assert fill_page(page, texts) == page, name
         assert unknown_quantities(page, known) == [], name
+    for page in (ROOT / "README.md", DOCS / "explorers.md"):
+        assert unknown_quantities(page.read_text(encoding="utf-8"), known) == [], page
 
 
 def test_runs_with_a_network_are_of_the_shipped_one_unless_they_name_another_in_todays_homes(
@@ -169,12 +175,16 @@ def test_a_sentence_may_quote_only_quantities_that_are_known_and_differences_in_
 
 
 def test_check_reports_a_page_and_a_csv_file_that_differ(
-    tmp_path: Path, runs: Mapping[RunKey, ArchivedRun], motions: dict[str, str], monkeypatch: pytest.MonkeyPatch, capsys
+    tmp_path: Path,
+    runs: Mapping[RunKey, ArchivedRun],
+    others: dict[str, dict[str, str]],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     few = sorted({row for table in page_tables() for _, cells in table.rows for row, _ in cells})
     monkeypatch.setattr(result_tables, "read_archive", lambda *_: runs)
     monkeypatch.setattr(result_tables, "paper_page", lambda *_: "The tables.\n")
-    monkeypatch.setattr(result_tables, "motion_texts", lambda _: motions)
+    monkeypatch.setattr(result_tables, "other_tables", lambda *_: others)
     monkeypatch.setattr(result_tables, "row_keys", lambda _: few)
     monkeypatch.setattr(result_tables, "comparisons", lambda: [pair for pair in comparisons() if pair.primary][:1])
     shutil.copy(TABLES / PUBLISHED, tmp_path)
@@ -262,12 +272,12 @@ def test_rows_take_turns_until_all_are_complete_and_the_archive_has_them(
     mine = write_run(tmp_path / "runs" / "mine", numbered(50), agent="poni")
     args = Args(run=True, out=tmp_path / "runs", archive=tmp_path / "runs.tar.gz")
     assert main(args) == 0
-    assert [name for name, _, _ in calls] == ["oracle", "oracle", "poni"]  # poni has the first 50
+    assert sorted(name for name, _, _ in calls) == ["oracle"] * 4 + ["poni"]  # of 200 and 100; poni has the first 50
     assert {count for _, count, _ in calls} == {50}
     assert {folder for name, _, folder in calls if name == "poni"} == {mine}
     printed = capsys.readouterr().out
     assert "val: poni, gt: 50 of 100 episodes" in printed
-    assert "val: oracle, gt: 0 of 100 episodes" in printed
+    assert "val: oracle, gt: 0 of 200 episodes" in printed
     assert [key.setup.agent for key in read_archive(args.archive, tmp_path / "read")] == ["poni"]
     assert [folder.name for folder in (tmp_path / "read").iterdir()] == ["poni_gt_none_val"]
     monkeypatch.setattr(result_tables, "VERSION", "2.0.0")

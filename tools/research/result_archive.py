@@ -39,7 +39,6 @@ _IMPORTED = {
     "rooms": ("procthor rooms_val.jsonl.gz", 100),
     "house": ("procthor house_train_1.json", 50),
     "kitchen": ("robocasa kitchen/scenes/kitchen.xml --root kitchen", 50),
-    "by_rules": ("molmospaces by_rules", 50),
 }
 """What `stubborn import` reads, and the number of episodes."""
 PREPARED = {

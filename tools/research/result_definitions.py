@@ -1,4 +1,4 @@
-"""The tables of docs/results.md and worlds.md: which runs each one shows, and which runs are compared.
+"""The tables of docs/results.md and three other pages: which runs each one shows, and which runs are compared.
 
 A table shows only rows of `docs/tables/results.csv`, and all rows of one split in a table are of the same episodes.
 """
@@ -16,7 +16,7 @@ from tools.research.result_archive import SEALED, VERSION
 
 MEANS = (SUCCESS, SPL, METRICS["soft_spl"], METRICS["distance_to_goal"], EXPLORED, COLLISIONS, TRAPPED, STEPS)
 """Metrics whose mean and interval each row of results.csv has."""
-COMPARED = (SUCCESS, SPL, EXPLORED, COLLISIONS, TRAPPED, FIRST_SIGHT, STEPS)
+COMPARED = (SUCCESS, SPL, EXPLORED, COLLISIONS, TRAPPED, FIRST_SIGHT, STEPS, METRICS["second_visit_spl"])
 """Metrics whose paired difference each row of comparisons.csv has."""
 PRIMARY_METRICS = (SUCCESS, SPL)
 """Metrics of the primary comparisons of a table; their p-values are corrected together (Holm 1979)."""
@@ -68,9 +68,9 @@ class PageTable:
         return _PAGES.get(self.name, "results.md")
 
 
-_PAGES = {"worlds": "worlds.md"}
+_PAGES = {"worlds": "worlds.md", "traps": "traps.md", "words": "words.md"}
 EPISODES = {
-    "headline": {"val": 100, "test": 500, SEALED: 200},
+    "headline": {"val": 200, "test": 500, SEALED: 200},
     "further": {"large": 50, "hazards": 50, "transfer": 100, "contact-heldout": 60},
     "ablation": {"val": 100, "hazards": 50},
     "explorers": {"val": 100},
@@ -79,21 +79,30 @@ EPISODES = {
     "network": {"val": 100, "transfer": 100},
     "earlier": {"val": 200, "large": 100, "hazards": 100},
     "drift": {"val": 30},
-    "worlds": {"val": 50, "rooms": 50, "house": 50, "kitchen": 50, "by_rules": 50},
+    "traps": {"contact-val": 60},
+    "words": dict.fromkeys(("words-seen", "words-synonyms", "words-unseen", "descriptions", "pictures"), 20),
+    "chains": {"chains-val": 20},
+    "worlds": {"val": 50, "rooms": 50, "house": 50, "kitchen": 50},
 }
 """The first episodes of each split that a table has."""
-_FIVE = ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet")
+_ORACLE_AND_BOTH = ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet")
 AGENTS: Mapping[str, Mapping[str, Sequence[str]]] = {
-    "headline": {"val": _FIVE, "test": _FIVE, SEALED: _FIVE},
+    "headline": {"val": _ORACLE_AND_BOTH, "test": _ORACLE_AND_BOTH, SEALED: _ORACLE_AND_BOTH},
     "further": {
-        "large": _FIVE,
-        "hazards": _FIVE[1:],
-        "transfer": _FIVE[3:],
-        "contact-heldout": _FIVE[1:3],
+        "large": _ORACLE_AND_BOTH,
+        "hazards": _ORACLE_AND_BOTH[1:],
+        "transfer": _ORACLE_AND_BOTH[3:],
+        "contact-heldout": _ORACLE_AND_BOTH[1:3],
     },
-    "worlds": dict.fromkeys(("val", "rooms", "house", "kitchen", "by_rules"), _FIVE),
+    "worlds": dict.fromkeys(("val", "rooms", "house", "kitchen"), _ORACLE_AND_BOTH),
+    "words": dict.fromkeys(EPISODES["words"], ("oracle gt", "frontier gt", "stubborn-plus gt", "stubborn-plus rednet")),
 }
 """Agents and segmentation by split; `further` has harder splits, `worlds` the houses of other projects."""
+CHAINS = (
+    RowKey.of("chains-val", EPISODES["chains"]["chains-val"], "stubborn-plus"),
+    RowKey.of("chains-val", EPISODES["chains"]["chains-val"], "stubborn-plus --config agent.memory=false"),
+)
+"""The agent that keeps what it knows of the house after each goal of a chain, and the one that forgets it."""
 ABLATION = {
     "stubborn-i": "I: none",
     "stubborn-ii": "II: untrap moves",
@@ -101,6 +110,7 @@ ABLATION = {
     "stubborn-iv": "IV: and exploration avoids them",
     "stubborn": "V: and visited ground is free",
 }
+TRAPS = {**ABLATION, "poni": "`poni`", "stubborn-plus": "`stubborn-plus`"}
 EXPLORERS = {
     "stubborn": "corners (`stubborn`)",
     "frontier-avoid": "`frontier-avoid`",
@@ -112,8 +122,8 @@ EXPLORERS = {
     "random": "`random`",
     "oracle": "`oracle`",
 }
-_ON_LARGE = ("stubborn", "frontier-avoid", "stubborn --explorer informed-tour", "poni", "oracle")
-LARGE_EXPLORERS = {name: EXPLORERS[name] for name in _ON_LARGE}
+_LARGE_NAMES = ("stubborn", "frontier-avoid", "stubborn --explorer informed-tour", "poni", "oracle")
+LARGE_EXPLORERS = {name: EXPLORERS[name] for name in _LARGE_NAMES}
 PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni")
 """Explorers whose comparison with corners is primary."""
 SEMEXP = {
@@ -154,6 +164,7 @@ def page_tables() -> tuple[PageTable, ...]:
             "explorer", "success %", "SPL", "first sight",
         ),
         _table("semexp", SEMEXP, {"val": (SUCCESS, SPL, MEDIAN)}, "explorer", "success %", "SPL", "first sight"),
+        _table("traps", TRAPS, {"contact-val": (SUCCESS, COLLISIONS)}, "agent", "success %", "collisions"),
         _table("drift", DRIFT, {"val": (SUCCESS, SPL)}, "`gps`, `compass`", "success %", "SPL"),
         _networks("network", NETWORK, "verification", (SUCCESS, SPL, FALSE_DETECTIONS)),
         _networks("earlier", dict.fromkeys(EPISODES["earlier"], EARLIER), "network", (SUCCESS, SPL)),
@@ -161,18 +172,24 @@ def page_tables() -> tuple[PageTable, ...]:
 
 
 def comparisons() -> Iterator[Comparison]:
-    """Yields the comparisons that the page may quote; our two agents with the same segmentation are primary."""
+    """Yields the comparisons that the page may quote; two that explore with the same segmentation are primary."""
     for table, splits in AGENTS.items():
         for split, names in splits.items():
             rows = [RowKey.of(split, EPISODES[table][split], *name.split()) for name in names]
             for second, first in itertools.combinations(rows, 2):
                 one, other = second.run.setup, first.run.setup
                 of_headline = table == "worlds" and split == "val"
-                is_primary = one.agent == "stubborn" and one.semantics == other.semantics and not of_headline
+                is_primary = (
+                    one.agent in ("stubborn", "frontier") and one.semantics == other.semantics and not of_headline
+                )
                 yield Comparison(table, first, second, is_primary)
     for split in EPISODES["ablation"]:
         *rows, whole = _rows("ablation", split, ABLATION).values()
         yield from (Comparison("ablation", row, whole) for row in rows)
+    traps = _rows("traps", "contact-val", TRAPS)
+    whole = traps.pop("stubborn")
+    yield from (Comparison("traps", row, whole) for row in traps.values())
+    yield Comparison("chains", *CHAINS)
     for table, split, names in (("explorers", "val", EXPLORERS), ("explorers-large", "large", LARGE_EXPLORERS)):
         corners, *others = _rows(table, split, names).items()
         for name, row in others:

@@ -11,10 +11,9 @@ between 0 and 1; `_low` and `_high` are the 95 % interval (`sim.app.evaluation.i
 column `family` names the primary comparisons of a table: `success_p_holm` and `spl_p_holm` are their p-values,
 corrected by Holm's method for all primary comparisons of the table in both metrics. All others are exploratory, and
 nothing is corrected for their number. `_replicates_sd` is the standard deviation that chance alone gives the mean over
-one replicate of each episode (`stubborn run --replicates`). The tables of results.md, worlds.md and motions.md stand
-between `<!-- table: NAME -->` and `<!-- end -->`. The sentences of these pages may quote only quantities with an
-interval, such as `94.0 [89.1, 98.0]`, that are in the CSV files, paper.md or the tables of motions, also with the
-opposite sign.
+one replicate of each episode (`stubborn run --replicates`). The tables of the pages in `PAGES` stand between
+`<!-- table: NAME -->` and `<!-- end -->`. The sentences of these pages may quote only quantities with an interval, such
+as `94.0 [89.1, 98.0]`, that are in the CSV files, in paper.md or in these tables, also with the opposite sign.
 
 With --run, the folder --out receives the runs of the archive first, so that another machine continues where one
 stopped. The archive then holds all runs of --out that are of its version of the splits. Rows with the network are in
@@ -37,7 +36,16 @@ from rich.console import Console
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import require_same_episodes
-from sim.app.analysis.metrics import FIRST_SIGHT, difference_cell, episodes_of, houses_of, mean_cell, median_text
+from sim.app.analysis.metrics import (
+    FIRST_SIGHT,
+    SPL,
+    SUCCESS,
+    difference_cell,
+    episodes_of,
+    houses_of,
+    mean_cell,
+    median_text,
+)
 from sim.app.analysis.tables import to_markdown
 from sim.app.commands.reproduce.paper_claims import MARGIN, JudgedTable, judged, overview
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
@@ -45,6 +53,7 @@ from sim.app.commands.reproduce.reproduce import Args as ReproduceArgs
 from sim.app.commands.reproduce.reproduce import lines_of, make_table, part_of, shared_runs
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, folder_name, run_in_turns, runs_in
 from sim.app.evaluation.intervals import Estimate, holm, replicate_spread
+from sim.app.evaluation.summary import summarise
 from sim.core.errors import ConfigError
 from sim.core.files import csv_text, write_atomically, write_together
 from sim.core.reading import read_bytes, read_text
@@ -65,6 +74,7 @@ from tools.research.result_archive import (
     unpack,
 )
 from tools.research.result_definitions import (
+    CHAINS,
     COMPARED,
     FAILED,
     MEANS,
@@ -81,7 +91,7 @@ from tools.research.result_definitions import (
 Record = dict[str, str]
 """One row of a CSV file, by column."""
 DOCS = ROOT / "docs"
-PAGES = ("results.md", "worlds.md", "motions.md")
+PAGES = ("results.md", "stubborn_plus.md", "worlds.md", "traps.md", "words.md", "motions.md")
 """Pages with tables."""
 RESULTS, COMPARISONS, PAPER, PUBLISHED = "results.csv", "comparisons.csv", "paper.md", "published_code.csv"
 QUANTITY = re.compile(r"([-+]?\d[\d.]*)(?: (?:points|steps|%|of SPL|of success))? \[([-+]?\d[\d.]*), ([-+]?\d[\d.]*)\]")
@@ -95,6 +105,17 @@ CHUNK = 50
 """Episodes of a row before the next row's turn."""
 PAPER_EPISODES = 100
 """The first episodes of val, as far as all runs of a table of the paper have them."""
+AGENTS_COMPARED = ("headline", "further")
+"""Tables whose primary comparisons stubborn_plus.md shows."""
+GOAL_GROUPS = {
+    "all": "all",
+    "category": "categories",
+    "words": "names and other words",
+    "picture": "pictures",
+    "description": "descriptions",
+    "second_visit": "second visits",
+}
+"""The goals of chains by kind, as `summarise` names them, and their names in words.md."""
 MOTION_EPISODES = {"val": 50}
 """The first episodes of the splits that motions.md shows, as far as all agents have them with each motion."""
 ABOUT_PAPER = f"""\
@@ -167,10 +188,10 @@ def main(args: Args) -> int:
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(pair, runs) for pair in pairs])
         paper = paper_page(Path(folder), runs)
-        motions = motion_texts(Path(folder))
+        others = other_tables(Path(folder), runs)
     filled = {
         args.docs / name: fill_page(read_text(args.docs / name, what="Page"), texts)
-        for name, texts in tables_by_page(results, motions).items()
+        for name, texts in tables_by_page(results, compared, others).items()
     }
     contents = {
         args.tables / RESULTS: to_csv(results),
@@ -178,9 +199,10 @@ def main(args: Args) -> int:
         args.tables / PAPER: paper,
         **filled,
     }
-    known = known_quantities(results, compared, read_csv(args.tables / PUBLISHED), [*motions.values(), paper])
+    texts = [paper, *(text for made in others.values() for text in made.values())]
+    known = known_quantities(results, compared, read_csv(args.tables / PUBLISHED), texts)
     unknown = {page: unknown_quantities(text, known) for page, text in filled.items()}
-    for page, text in ((page, text) for page, texts in unknown.items() for text in texts):
+    for page, text in ((page, text) for page, quoted in unknown.items() for text in quoted):
         say(f"'{page}' quotes {text}, which is in no CSV file and no table.")
     differing = [file for file, text in contents.items() if not file.is_file() or _text(file) != text]
     is_unknown = any(unknown.values())
@@ -255,6 +277,19 @@ def paper_page(folder: Path, runs: Mapping[RunKey, ArchivedRun]) -> str:
     return f"{ABOUT_PAPER}{overview(claims)}\n{why}" + "\n".join(pages)
 
 
+def other_tables(folder: Path, runs: Mapping[RunKey, ArchivedRun]) -> dict[str, dict[str, str]]:
+    """Returns for each page its tables that are not made of rows of results.csv, as Markdown by name.
+
+    Args:
+        folder: the unpacked archive; it receives the tables of motions, too.
+        runs: the runs in it.
+
+    Raises:
+        ConfigError: a run is missing.
+    """
+    return {"motions.md": motion_texts(folder), "words.md": {"chains": chains_text(runs)}}
+
+
 def motion_texts(folder: Path) -> dict[str, str]:
     """Returns the tables of each split of motions.md, made from the unpacked archive in a folder.
 
@@ -271,6 +306,23 @@ def motion_texts(folder: Path) -> dict[str, str]:
             raise ConfigError(f"'{ARCHIVE.name}' lacks a run of the tables of motions on {split}.")
         texts[f"motions-{split}"] = SPLIT_HASH.sub("", text)  # it reads like a commit
     return texts
+
+
+def chains_text(runs: Mapping[RunKey, ArchivedRun]) -> str:
+    """Returns the table of words.md with the goals of chains, by kind."""
+    keeps, forgets = (summarise(runs[row.run].first_results(row.episodes))["goals"] for row in CHAINS)
+    rows = []
+    for group, label in GOAL_GROUPS.items():
+        cells = (
+            (keeps[group]["success"], SUCCESS),
+            (keeps[group]["spl"], SPL),
+            (forgets[group]["success"], SUCCESS),
+            (forgets[group]["spl"], SPL),
+        )
+        texts = (_interval_text(metric, [cell["mean"], *cell["ci95"]]) for cell, metric in cells)
+        rows.append((f"{label}, {keeps[group]['goals']}", *texts))
+    header = ("goals", "success %", "SPL", "without memory: success %", "SPL")
+    return _markdown(header, rows, labels=1)
 
 
 def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
@@ -362,18 +414,46 @@ def with_families(pairs: Sequence[Comparison], records: Sequence[Record]) -> lis
     return classified
 
 
-def tables_by_page(results: Sequence[Record], motions: Mapping[str, str]) -> dict[str, dict[str, str]]:
-    """Returns for each page its tables as Markdown by name."""
+def tables_by_page(
+    results: Sequence[Record], compared: Sequence[Record], others: Mapping[str, Mapping[str, str]]
+) -> dict[str, dict[str, str]]:
+    """Returns for each page its tables as Markdown by name.
+
+    Args:
+        results: the rows of results.csv.
+        compared: the rows of comparisons.csv.
+        others: for each page the tables that are not made of such rows.
+    """
     rows = {(*(record[name] for name in _identity_names()), record["episodes"]): record for record in results}
 
     def record_of(key: RowKey) -> Record:
         return rows[(*_identity(key.run).values(), str(key.episodes))]
 
-    texts: dict[str, dict[str, str]] = {page: {} for page in PAGES}
+    texts = {page: dict(others.get(page, {})) for page in PAGES}
     for table in page_tables():
         texts[table.page][table.name] = table_text(table, record_of)
-    texts["motions.md"] |= motions
+    texts["stubborn_plus.md"]["gains"] = gains_text(compared)
     return texts
+
+
+def gains_text(compared: Iterable[Record]) -> str:
+    """Returns the table of stubborn_plus.md: the primary comparisons with `stubborn`, by segmentation and split."""
+    rows = []
+    for semantics, label in (("gt", "truth"), ("rednet", "network")):
+        for record in compared:
+            if (
+                record["table"] in AGENTS_COMPARED
+                and record["family"] == "primary"
+                and record["semantics"] == semantics
+            ):
+                cells = (
+                    text
+                    for metric in PRIMARY_METRICS
+                    for text in (cell_text(record, metric), f"{float(record[f'{metric.key}_p_holm']):.3f}")
+                )
+                rows.append((f"{record['split']}, {record['episodes']}", label, *cells))
+    header = ("split, episodes", "segmentation", "gain in success, points", "corrected p", "gain in SPL", "corrected p")
+    return _markdown(header, rows, labels=2)
 
 
 def fill_page(page: str, texts: Mapping[str, str]) -> str:
@@ -396,12 +476,14 @@ def fill_page(page: str, texts: Mapping[str, str]) -> str:
 
 def table_text(table: PageTable, record_of: Callable[[RowKey], Record]) -> str:
     """Returns a table as Markdown."""
-    labels = len(table.rows[0][0])
-    rule = ["---"] * labels + ["--:"] * (len(table.header) - labels)
-    lines = [table.header, rule]
-    for texts, cells in table.rows:
-        lines.append([*texts, *(cell_text(record_of(key), column) for key, column in cells)])
-    return "".join(f"|{'|'.join(line)}|\n" for line in lines)
+    rows = [(*labels, *(cell_text(record_of(key), column) for key, column in cells)) for labels, cells in table.rows]
+    return _markdown(table.header, rows, labels=len(table.rows[0][0]))
+
+
+def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]], *, labels: int) -> str:
+    """Returns a table whose first columns are labels and whose others are numbers."""
+    rule = ["---"] * labels + ["--:"] * (len(header) - labels)
+    return "".join(f"|{'|'.join(line)}|\n" for line in (header, rule, *rows))
 
 
 def cell_text(record: Record, column: Metric | str, *, sign: str = "") -> str:
@@ -409,10 +491,13 @@ def cell_text(record: Record, column: Metric | str, *, sign: str = "") -> str:
     if isinstance(column, str):
         return record[column]
     numbers = [record[f"{column.key}{end}"] for end in ("", "_low", "_high")]
-    if "" in numbers:
-        return "-"
-    factor = 100.0 if column.percent else 1.0
-    mean, low, high = (f"{factor * float(number):{sign}.{column.digits}f}" for number in numbers)
+    return "-" if "" in numbers else _interval_text(column, list(map(float, numbers)), sign=sign)
+
+
+def _interval_text(metric: Metric, numbers: Sequence[float], *, sign: str = "") -> str:
+    """Returns a mean and the ends of its interval as text."""
+    factor = 100.0 if metric.percent else 1.0
+    mean, low, high = (f"{factor * number:{sign}.{metric.digits}f}" for number in numbers)
     return f"{mean} [{low}, {high}]"
 
 
