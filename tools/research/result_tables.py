@@ -449,7 +449,7 @@ def gains_text(compared: Iterable[Record]) -> str:
                 cells = (
                     text
                     for metric in PRIMARY_METRICS
-                    for text in (cell_text(record, metric), f"{float(record[f'{metric.key}_p_holm']):.3f}")
+                    for text in (cell_text(record, metric), _p_text(float(record[f"{metric.key}_p_holm"])))
                 )
                 rows.append((f"{record['split']}, {record['episodes']}", label, *cells))
     header = ("split, episodes", "segmentation", "gain in success, points", "corrected p", "gain in SPL", "corrected p")
@@ -478,6 +478,10 @@ def table_text(table: PageTable, record_of: Callable[[RowKey], Record]) -> str:
     """Returns a table as Markdown."""
     rows = [(*labels, *(cell_text(record_of(key), column) for key, column in cells)) for labels, cells in table.rows]
     return _markdown(table.header, rows, labels=len(table.rows[0][0]))
+
+
+def _p_text(p: float) -> str:
+    return f"{p:.3f}" if p >= 0.001 else "< 0.001"
 
 
 def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]], *, labels: int) -> str:
