@@ -115,7 +115,7 @@ def _count_rooms(scene: Scene, rooms: Counter[str], held: Counter[tuple[str, str
     inside: dict[tuple[str, str], set[str]] = defaultdict(set)
     for item in scene.task.truth.meaning.objects:
         if item.is_goal and item.room:
-            inside[item.room, item.room_kind].add(item.instance.category)
+            inside[item.room.name, item.room_kind].add(item.instance.category)
     for (_, kind), categories in inside.items():
         held.update((kind, category) for category in categories)
 
