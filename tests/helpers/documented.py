@@ -342,7 +342,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn reproduce motions --semantics gt --split val --agents oracle 'oracle --motion sliding' --episodes 1"
         " --workers 1 --out {tmp}/paper",
     ),
-    "stubborn reproduce splits --episodes 100 --agents stubborn stubborn-plus oracle": (
+    "stubborn reproduce splits --episodes 200 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",
     ),
     "stubborn reproduce splits --splits val hazards --agents stubborn 'stubborn --explorer tour'": (
