@@ -307,11 +307,11 @@ def test_replicates_are_no_episodes_and_their_spread_is_in_the_table(tmp_path: P
 
 def test_a_row_has_the_command_that_repeats_it(tmp_path: Path) -> None:
     settings = {"agent.seeker.look.bar": [[0, 0.05], [500, 0.7]]}
-    write_run(tmp_path / "a", [LINE], explorer="tour", verification="none", settings=settings)
+    write_run(tmp_path / "a", [LINE], explorer="tour", verification="none", settings=settings, seed_key="0123abcd")
     assert archived(tmp_path).command(1) == (
         "stubborn run --agent stubborn --explorer tour --verification none --config "
         "'agent.seeker.look.bar=[[0,0.05],[500,0.7]]' "
-        "--semantics gt --split val --episodes 1"
+        "--semantics gt --split val --episodes 1 --seed-key 0123abcd"
     )
 
 

@@ -105,7 +105,7 @@ class ArchivedRun:
         return str(self.run.config.get("files_sha256", {}).get("weights", ""))[:CHECKSUM_DIGITS]
 
     def command(self, episodes: int) -> str:
-        """Returns the commands, with semicolons between, that run the same episodes.
+        """Returns the commands, with semicolons between, that run the same episodes with the same random numbers.
 
         A run with a network that did not average with the mirror image says so, because others are the default on some
         processors.
@@ -117,7 +117,10 @@ class ArchivedRun:
             options += [*([] if "--config" in options else ["--config"]), "detector.mirrored=false"]
         source = f"runs/{split}" if split in PREPARED else self.run.recorded("split")
         words = ["stubborn", "run", "--agent", setup.agent, *options, "--semantics", setup.semantics]
-        run = shlex.join([*words, "--split", source, "--episodes", str(episodes)])
+        words += ["--split", source, "--episodes", str(episodes)]
+        if (seed_key := self.run.config.get("seed_key")) is not None:
+            words += ["--seed-key", seed_key]
+        run = shlex.join(words)
         return "; ".join([*PREPARED.get(split, ()), run])
 
 

@@ -103,6 +103,17 @@ CHAINS = (
     RowKey.of("chains-val", EPISODES["chains"]["chains-val"], "stubborn-plus --config agent.memory=false"),
 )
 """The agent that keeps what it knows of the house after each goal of a chain, and the one that forgets it."""
+GOAL_GROUPS = {
+    "all": "all",
+    "category": "categories",
+    "words": "names and other words",
+    "picture": "pictures",
+    "description": "descriptions",
+    "second_visit": "second visits",
+}
+"""The goals of chains by kind, as `sim.app.evaluation.summary.summarise` names them, and their names in words.md."""
+GAINS = ("headline", "further")
+"""Tables whose primary comparisons stubborn_plus.md shows."""
 ABLATION = {
     "stubborn-i": "I: none",
     "stubborn-ii": "II: untrap moves",

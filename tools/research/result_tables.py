@@ -77,6 +77,8 @@ from tools.research.result_definitions import (
     CHAINS,
     COMPARED,
     FAILED,
+    GAINS,
+    GOAL_GROUPS,
     MEANS,
     MEDIAN,
     PRIMARY_METRICS,
@@ -105,17 +107,6 @@ CHUNK = 50
 """Episodes of a row before the next row's turn."""
 PAPER_EPISODES = 100
 """The first episodes of val, as far as all runs of a table of the paper have them."""
-AGENTS_COMPARED = ("headline", "further")
-"""Tables whose primary comparisons stubborn_plus.md shows."""
-GOAL_GROUPS = {
-    "all": "all",
-    "category": "categories",
-    "words": "names and other words",
-    "picture": "pictures",
-    "description": "descriptions",
-    "second_visit": "second visits",
-}
-"""The goals of chains by kind, as `summarise` names them, and their names in words.md."""
 MOTION_EPISODES = {"val": 50}
 """The first episodes of the splits that motions.md shows, as far as all agents have them with each motion."""
 ABOUT_PAPER = f"""\
@@ -128,8 +119,9 @@ corresponds to the paper's EEAux and is not that agent.
 
 `stubborn reproduce all --episodes {PAPER_EPISODES} --workers 2` measures these tables again, and resumes; each table
 states its hours. Here, the network computed in fp32; on a processor with bf16 instructions, the command averages each
-frame with its mirror image, so that rows with the network differ. This page is made from the [result
-lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
+frame with its mirror image, so that rows with the network differ. `random`, `semexp` and `cloned` draw other random
+numbers in each run; the commands in results.csv repeat those of a row (`--seed-key`). This page is made from the
+[result lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
 
 ## Verdicts
 
@@ -441,11 +433,7 @@ def gains_text(compared: Iterable[Record]) -> str:
     rows = []
     for semantics, label in (("gt", "truth"), ("rednet", "network")):
         for record in compared:
-            if (
-                record["table"] in AGENTS_COMPARED
-                and record["family"] == "primary"
-                and record["semantics"] == semantics
-            ):
+            if record["table"] in GAINS and record["family"] == "primary" and record["semantics"] == semantics:
                 cells = (
                     text
                     for metric in PRIMARY_METRICS
