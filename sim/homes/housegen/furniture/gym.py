@@ -7,7 +7,7 @@ Usual retail dimensions: treadmills 1.70-2.10 m long, 0.75-0.90 m wide, 1.30-1.5
 from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.shapes import chamfered_box
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -90,8 +90,7 @@ def exercise_bike(w: Workbench) -> None:
 def dumbbell_rack(w: Workbench) -> None:
     """Builds a sloped rack with two rows of hexagonal dumbbells."""
     half, metal, rubber = 0.5 * w.width(0.95, 1.25), w.look("iron"), w.look("rubber")
-    for side in BOTH_SIDES:
-        y = side * (half - 0.03)
+    for y in inset((-half, half), 0.03):
         w.box((-0.25, 0.28), around(y, 0.03), (0.0, 0.06), metal)
         w.bar((0.20, y, 0.04), (-0.16, y, 0.82), 0.05, 0.07, metal)
     count = 4

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
+from sim.homes.housegen.furniture.parts import around, centred, inset
 from sim.homes.housegen.furniture.parts.flat_pictures import Page, photograph
 from sim.homes.housegen.furniture.parts.palette_mesh import PaletteMesh
 from sim.homes.housegen.furniture.shapes import named_mesh
@@ -19,8 +19,7 @@ def frame(w: Workbench, width: float, height: float, border: float, thick: float
     y = 0.5 * width
     w.box((0.0, thick), (-y, y), (0.0, border), look)
     w.box((0.0, thick), (-y, y), (height - border, height), look)
-    for side in BOTH_SIDES:
-        c = side * (y - 0.5 * border)
+    for c in inset((-y, y), 0.5 * border):
         w.box((0.0, thick), around(c, 0.5 * border), (border, height - border), look)
 
 

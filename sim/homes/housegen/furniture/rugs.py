@@ -25,8 +25,7 @@ def runner(w: Workbench) -> None:
     width, depth = w.width(1.8, 2.8), w.depth(0.65, 0.85)
     w.box(centred(depth), centred(width), (0.0, 0.007), w.look("fabric"), solid=False)
     band = w.look("bright")
-    for side in (-1, 1):
-        c = side * (0.5 * depth - 0.10)
+    for c in centred(depth, 0.10):
         w.box(around(c, 0.03), centred(width, 0.08), (0.0, 0.010), band, solid=False)
 
 
