@@ -15,7 +15,7 @@ from sim.homes.housegen.furnishing.placement.floor import put_at
 from sim.homes.housegen.furnishing.placement.free_standing import put_in_middle
 from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.homes.housegen.furnishing.steps import place, put_on_top
-from sim.homes.housegen.furniture.item import Hints, Item, Look
+from sim.homes.housegen.furniture.item import Item, Look
 from sim.world.arrangement import AISLE_M, MAX_TRIANGLE_M, MIN_TRIANGLE_M
 
 WORKTOP_M = (0.62, 0.90)
@@ -185,8 +185,7 @@ def _hang_cabinets(layout: RoomLayout, source: FurnitureSource, unit: Placement,
 def _place_island(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places a free-standing counter with stools at one side."""
     for width_m in (None, 1.3):
-        hints: Hints = {"width_m": width_m} if width_m else {}
-        item = source.make("counter", "island", **hints)
+        item = source.make("counter", "island", width_m=width_m)
         if item is None:
             return None
         front_m, across_m = item.size_m[0] / 2 + 0.4, 0.3 * item.size_m[1]

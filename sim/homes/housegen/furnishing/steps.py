@@ -155,9 +155,9 @@ def lay_rug(
 
     `size_m` is its depth and width. Returns False if no item fits there.
     """
-    hints: Hints = {"depth_m": size_m[0], "width_m": size_m[1]} if size_m else {}
+    depth_m, width_m = size_m or (None, None)
     for n in range(3):
-        rug = source.make("floor", "rug", fresh=n > 0, **hints)
+        rug = source.make("floor", "rug", fresh=n > 0, depth_m=depth_m, width_m=width_m)
         if rug is None:
             return False
         if (runner is None or runner == (min(rug.size_m[:2]) < RUNNER_M)) and lay_flat(layout, rug, x_m, y_m, yaw_rad):
