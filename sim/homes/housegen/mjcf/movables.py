@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
 from sim.homes.housegen.furniture.item import Geom, Item, MeshShape
 from sim.homes.housegen.furniture.transforms import (
@@ -254,17 +255,14 @@ def _light_kg(part: Sequence[Geom]) -> float | None:
 
 def _separate(geoms: Sequence[Geom]) -> list[list[Geom]]:
     """Returns groups of geoms with boxes that touch, in the order of their first geoms."""
-    boxes = [geom_bounds(geom) for geom in geoms]
-    group = list(range(len(geoms)))
-    for i, (low, high) in enumerate(boxes):
-        for j in range(i):
-            if (np.maximum(low, boxes[j][0]) <= np.minimum(high, boxes[j][1]) + 0.002).all():
-                old, new = group[i], group[j]
-                group = [new if g == old else g for g in group]
-    return [[geom for geom, g in zip(geoms, group, strict=True) if g == number] for number in dict.fromkeys(group)]
+    low, high = np.swapaxes([geom_bounds(geom) for geom in geoms], 0, 1)
+    touching = (np.maximum(low[:, None], low) <= np.minimum(high[:, None], high) + 0.002).all(axis=2)
+    count, group = connected_components(touching)
+    return [[geom for geom, g in zip(geoms, group, strict=True) if g == number] for number in range(count)]
 
 
 def _has_castors(item: Item) -> bool:
+    """Returns whether an item rolls on balls at the floor."""
     return any(geom.shape == "sphere" and geom_bounds(geom)[0][2] < _ON_FLOOR_M for geom in item.geoms)
 
 
