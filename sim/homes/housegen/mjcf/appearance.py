@@ -16,6 +16,7 @@ import numpy as np
 from sim.core.colours import clear_colour_name
 from sim.homes.housegen.furniture.item import Geom, Item, Look
 from sim.homes.housegen.furniture.names import name_of_style
+from sim.homes.housegen.mjcf.triangles import triangle_areas
 from sim.homes.housegen.surfaces.textures import TEXTURES
 from sim.houses.instance_facts import InstanceFacts
 
@@ -79,8 +80,7 @@ def _surface_m2(geom: Geom) -> float:
     if geom.shape == "mesh":
         if geom.mesh is None or not len(geom.mesh.faces):
             return 0.0
-        a, b, c = (geom.mesh.vertices_m[geom.mesh.faces[:, corner]] for corner in range(3))
-        return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+        return float(triangle_areas(geom.mesh.vertices_m[geom.mesh.faces]).sum())
     size = geom.size_m
     if geom.shape == "box":
         x, y, z = size

@@ -31,7 +31,7 @@ from sim.homes.housegen.furniture.transforms import (
     rounded_point,
 )
 from sim.homes.housegen.mjcf.collision import collision_boxes
-from sim.homes.housegen.mjcf.triangles import facets
+from sim.homes.housegen.mjcf.triangles import facets, triangle_areas
 
 MAX_PUSH_N = 20.0
 """Largest force that may be needed to push an item: the robot can exert 25 N. Heavier items stay static."""
@@ -208,9 +208,8 @@ def _mass_properties(
         corners, faces = facets(geom)
         world = np.asarray(geom.pos_m) + corners @ matrix_from_euler(*geom.euler_rad).T
         a, b, c = (world[faces[:, k]] for k in range(3))
-        area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
         points += [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)]
-        weights += [area * (FOLIAGE_SHARE if _is_foliage(item, geom) else 1.0)] * 3
+        weights += [triangle_areas(world[faces]) * (FOLIAGE_SHARE if _is_foliage(item, geom) else 1.0)] * 3
     at, share = np.vstack(points), np.concatenate(weights)
     mass = mass_kg * share / share.sum()
     centre = mass @ at / mass_kg
