@@ -115,7 +115,7 @@ def hamper_tower(w: Workbench) -> None:
     """Builds a tall case: two tilted laundry bins below, two boards with detergents above."""
     width, depth, height = w.width(0.60, 0.80), w.depth(0.36, 0.42), w.height(1.60, 1.85)
     look, x, y = parts.wood_look(w), *parts.footprint(depth, width)
-    parts.open_case(w, x, y, (0.0, height), 0.02, look)
+    parts.open_case(w, x, y, (0.0, height), look)
     for z, room in ((0.74, 0.36), (1.14, height - 1.2)):
         w.box((x[0] + 0.012, x[1]), inset(y, 0.02), (z, z + 0.02), look)
         _stock(w, inset(y, 0.04), z + 0.02, room, linen=False)
@@ -132,7 +132,7 @@ def walk_in_case(w: Workbench) -> None:
     """Builds an open wardrobe case: drawers below, boards with folded clothes and boxes above."""
     width, depth, height = w.width(0.75, 1.00), w.depth(0.40, 0.46), w.height(1.75, 2.00)
     look, x, y = parts.wood_look(w), *parts.footprint(depth, width)
-    parts.open_case(w, x, y, (0.0, height), 0.02, look)
+    parts.open_case(w, x, y, (0.0, height), look)
     w.box(inset(x, 0.012, parts.FRONT_M), inset(y, 0.02), (0.02, 0.62), look)
     parts.plain_drawers(w, x[1] - parts.FRONT_M, inset(y, 0.02), (0.03, 0.61), 3, 1, look, w.look("metal"), "bar")
     step = (height - 0.64) / 3
