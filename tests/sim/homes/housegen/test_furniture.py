@@ -277,10 +277,8 @@ def test_euler_angles_of_a_vertical_pitch_give_the_same_rotation():
     assert matrix_from_euler(*euler_from_matrix(matrix)) == pytest.approx(matrix, abs=2e-4)
 
 
-@pytest.mark.parametrize("name", TEXTURES)
-def test_textures_have_no_seam(name):
-    if TEXTURES[name].tile_m == 0.0:
-        pytest.skip("shown once, never repeated")
+@pytest.mark.parametrize("name", [name for name, texture in TEXTURES.items() if texture.tile_m > 0.0])
+def test_textures_that_repeat_have_no_seam(name):
     image = TEXTURES[name].pixels().astype(float)
     inside = np.abs(np.diff(image, axis=0)).mean(), np.abs(np.diff(image, axis=1)).mean()
     across = np.abs(image[0] - image[-1]).mean(), np.abs(image[:, 0] - image[:, -1]).mean()
