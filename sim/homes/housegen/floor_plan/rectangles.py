@@ -99,6 +99,10 @@ class Rect:
         """Returns the interval of a side: in y for east and west, in x for north and south."""
         return (self.y0, self.y1) if side in ("east", "west") else (self.x0, self.x1)
 
+    def across_m(self, side: Side) -> float:
+        """Returns the extent from a side to the opposite one."""
+        return self.width_m if side in ("east", "west") else self.depth_m
+
     def strip(self, side: Side, span: Interval, inward_m: float, outward_m: float = 0.0) -> Rect:
         """Returns the rectangle along `span` of a side, from `inward_m` inside to `outward_m` outside."""
         line, sign = self.line(side), outward(side)

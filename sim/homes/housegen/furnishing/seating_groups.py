@@ -105,7 +105,7 @@ def _sides(layout: RoomLayout, source: FurnitureSource) -> list[Side]:
 def _place_sofa(layout: RoomLayout, source: FurnitureSource, item: Item, sides: Sequence[Side]) -> Placement | None:
     """Places a sofa in the middle of the first wall that fits; in a deep room away from it, nearer to what it faces."""
     for side in sides:
-        depth_m = layout.inner.width_m if side in ("east", "west") else layout.inner.depth_m
+        depth_m = layout.inner.across_m(side)
         gap_m = depth_m - item.size_m[0] - FOCUS_DEPTH_M - source.uniform(*VIEWING_M)
         if gap_m < BEHIND_M or (depth_m < 5.5 and source.chance(0.6)):
             gap_m = WALL_GAP_M
