@@ -79,7 +79,7 @@ def exercise_bike(w: Workbench) -> None:
             solid=False,
         )
         w.box(
-            (0.09 * side + 0.0, 0.09 * side + 0.12),
+            (0.09 * side, 0.09 * side + 0.12),
             around(side * 0.14, 0.05),
             (0.325 - side * 0.12, 0.345 - side * 0.12),
             dark,
@@ -96,12 +96,10 @@ def dumbbell_rack(w: Workbench) -> None:
     count = 4
     for x, z in ((0.09, 0.36), (-0.06, 0.70)):
         for dx in (-0.10, 0.10):
-            w.bar(
-                (x + dx, -half, z - 0.10 * dx / 0.1 * 0.3), (x + dx, half, z - 0.10 * dx / 0.1 * 0.3), 0.03, 0.05, metal
-            )
+            w.bar((x + dx, -half, z - 0.3 * dx), (x + dx, half, z - 0.3 * dx), 0.03, 0.05, metal)
         for i in range(count):
             y = (i + 0.5) * (2 * half - 0.1) / count - half + 0.05
-            w.rod((x - 0.14, y, z + 0.10), (x + 0.14, y, z + 0.10 - 0.05), 0.015, w.look("chrome"), solid=False)
+            w.rod((x - 0.14, y, z + 0.10), (x + 0.14, y, z + 0.05), 0.015, w.look("chrome"), solid=False)
             for dx in (-0.10, 0.10):
                 w.rod(
                     (x + dx - 0.04, y, z + 0.08 - 0.2 * dx + 0.01),

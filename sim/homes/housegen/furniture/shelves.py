@@ -112,7 +112,7 @@ def etagere(w: Workbench) -> None:
             w.cylinder((0.0, -0.14), (z + 0.012, z + 0.17), 0.045, w.look("ceramic"), solid=False)
 
 
-def corner_niche(w: Workbench) -> None:
+def niches(w: Workbench) -> None:
     """Builds open boxes of different sizes on the wall, with books and vases in them."""
     width, depth, look = w.width(0.80, 1.20), w.depth(0.20, 0.25), parts.wood_look(w)
     w.mount_height_m = 1.10
@@ -169,6 +169,6 @@ STYLES = (
     Style("shelving", "wall_boards", "train", wall_boards, ("wall",), "wall"),
     Style("shelving", "pipe_shelf", "heldout", pipe_shelf, ("bookcase",)),
     Style("shelving", "etagere", "heldout", etagere, ("bookcase",)),
-    Style("shelving", "niches", "heldout", corner_niche, ("wall",), "wall"),
+    Style("shelving", "niches", "heldout", niches, ("wall",), "wall"),
     Style("shelving", "cubes", "train", cubes, ("bookcase",)),
 )

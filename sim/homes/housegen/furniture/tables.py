@@ -99,7 +99,7 @@ def glass_dining(w: Workbench) -> None:
         w.box((x[0], x[1]), around(y, 0.03), (height - 0.04, height - 0.015), metal)
 
 
-def tulip_legs_round(w: Workbench) -> None:
+def round_legs(w: Workbench) -> None:
     """Builds a round table with four straight round legs and a cross under the top."""
     radius, height, wood = 0.5 * w.width(0.95, 1.20), w.length(0.73, 0.76), w.look("wood")
     parts.round_top(w, radius, (height - 0.03, height), wood)
@@ -180,7 +180,7 @@ STYLES = (
     Style("table", "industrial", "train", industrial, ("dining",)),
     Style("table", "trestle", "heldout", trestle, ("dining",)),
     Style("table", "glass_dining", "heldout", glass_dining, ("dining",)),
-    Style("table", "round_legs", "heldout", tulip_legs_round, ("dining",)),
+    Style("table", "round_legs", "heldout", round_legs, ("dining",)),
     Style("table", "desk_pedestal", "train", desk_pedestal, ("desk",)),
     Style("table", "desk_frame", "train", desk_frame, ("desk",)),
     Style("table", "wing_desk", "heldout", wing_desk, ("desk",)),

@@ -123,7 +123,7 @@ def hamper_tower(w: Workbench) -> None:
         span = parts.on_side(side, 0.01, 0.5 * width - 0.025)
         w.box((x[1] - 0.03, x[1] - 0.01), span, (0.05, 0.70), w.look("wicker"), tilt=0.05)
         w.box(
-            (x[1] + 0.0, x[1] + 0.015), around(sum(span) / 2, 0.06), (0.58, 0.62), w.look("dark"),
+            (x[1], x[1] + 0.015), around(sum(span) / 2, 0.06), (0.58, 0.62), w.look("dark"),
             solid=False,
         )  # fmt: skip
 
