@@ -39,9 +39,10 @@ def furnish_kitchen(layout: RoomLayout, source: FurnitureSource) -> None:
     kitchen_units(layout, source)
     island = _place_island(layout, source) if area > 11 and source.chance(0.8 if dining_elsewhere else 0.35) else None
     if area > 8 and not dining_elsewhere and (island is None or area > 20):
-        _ = dining_group(layout, source, around_m=0.55) or breakfast_group(layout, source)
-    elif island is None and area > 10:
-        _ = breakfast_group(layout, source) or place(layout, source, "cabinet", "sideboard", front_m=0.8)
+        if dining_group(layout, source, around_m=0.55) is None:
+            breakfast_group(layout, source)
+    elif island is None and area > 10 and breakfast_group(layout, source) is None:
+        place(layout, source, "cabinet", "sideboard", front_m=0.8)
 
 
 def kitchen_units(layout: RoomLayout, source: FurnitureSource) -> bool:
