@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -66,12 +66,15 @@ class GeneratedHouse:
 
     spec: mujoco.MjSpec
     plan: FloorPlan
-    geoms: int
-    tries: int
     rejects: tuple[str, ...]
     """The reason why each earlier try was rejected."""
-    styles: Mapping[str, str] = field(default_factory=dict)
+    styles: Mapping[str, str]
     """Name of the style of each piece of furniture, by the label of its instance (`chair_03`)."""
+
+    @property
+    def tries(self) -> int:
+        """The number of tries, the last of which succeeded."""
+        return len(self.rejects) + 1
 
 
 def generate(
@@ -92,10 +95,9 @@ def generate(
         ConfigError: a field does not exist, or a value is not allowed.
         HouseError: no try within the bound gave a house without a fault.
     """
-    unknown = sorted(set(fields) - {field.name for field in dataclasses.fields(HouseConfig)})
-    if unknown:
-        there_is = ", ".join(field.name for field in dataclasses.fields(HouseConfig))
-        raise ConfigError(f"generate has no option '{unknown[0]}'. Available: {there_is}.")
+    options = [field.name for field in dataclasses.fields(HouseConfig)]
+    if unknown := sorted(set(fields) - set(options)):
+        raise ConfigError(f"generate has no option '{unknown[0]}'. Available: {', '.join(options)}.")
     return generate_house(seed, replace(config or HouseConfig(), **fields), catalogue).spec
 
 
@@ -126,8 +128,7 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
         lay_ground(built.spec, house_text(built.spec), seed, POOL_STREAM[config.pool])
         faults = check_house(built.spec, furnished=True)
         if not faults:
-            geoms = len(built.spec.geoms)
-            return GeneratedHouse(built.spec, draft.plan, geoms, attempt + 1, tuple(rejects), built.styles)
+            return GeneratedHouse(built.spec, draft.plan, tuple(rejects), built.styles)
         rejects.append("; ".join(faults))
     reasons = "; ".join(f"{reason} ({count} x)" for reason, count in Counter(rejects).most_common(MAX_REASONS))
     raise HouseError(f"Seed {seed} gave no house without faults in {MAX_TRIES} tries: {reasons}.")
@@ -188,18 +189,18 @@ def _draw_storeys(
     Raises:
         PlanError: no plan fits, or the stairs do not fit into any of the plans.
     """
-    plan, openings = _draw_plan(rng, kind, area_m2, config)
-    if config.storeys == 1:
-        return plan, openings, None
-    for _ in range(MAX_STAIRS_TRIES - 1):
+    error = PlanError("no stairs were drawn")
+    for _ in range(MAX_STAIRS_TRIES):
+        plan, openings = _draw_plan(rng, kind, area_m2, config)
+        if config.storeys == 1:
+            return plan, openings, None
         try:
             stairs = draw_stairs(rng, plan, openings)
-        except PlanError:
-            plan, openings = _draw_plan(rng, kind, area_m2, config)
+        except PlanError as fault:
+            error = fault
         else:
             return plan, stairs.lower_openings, stairs
-    stairs = draw_stairs(rng, plan, openings)
-    return plan, stairs.lower_openings, stairs
+    raise error
 
 
 def _draw_plan(
@@ -250,7 +251,7 @@ def _build(draft: _Draft, config: HouseConfig) -> HouseBuilder:
     storeys = [(0.0, draft.structure, draft.layouts)]
     if draft.upper is not None:
         draft.upper.add_ground(builder)
-        storeys.append((draft.upper.floor_z_m, draft.upper.structure, draft.upper.layouts))
+        storeys.append((draft.upper.stairs.floor_z_m, draft.upper.structure, draft.upper.layouts))
     for z_m, structure, layouts in storeys:
         for placed in structure:
             builder.add(lifted(placed, z_m))

@@ -75,20 +75,18 @@ class Stairs:
 class UpperStorey:
     """A furnished upper storey. Its items have heights above its own floor, its lamps above the ground."""
 
-    plan: FloorPlan
-    floor_z_m: float
-    ceiling_m: float
-    well: Rect
+    stairs: Stairs
     structure: list[PlacedItem]
     layouts: list[RoomLayout]
     lamps: list[Lamp]
 
     def add_ground(self, builder: HouseBuilder) -> None:
         """Adds the slabs around the stairwell that carry wheels, and the sites of the rooms."""
-        for rect in frame_around(self.plan.bounds.grown(OUTER_WALL_M), self.well):
-            builder.add_ground(rect, self.floor_z_m)
-        for room in self.plan.rooms:
-            builder.add_room(room.name, room.rect.grown(-HALF_WALL_M), self.ceiling_m, self.floor_z_m)
+        plan, z_m = self.stairs.plan, self.stairs.floor_z_m
+        for rect in frame_around(plan.bounds.grown(OUTER_WALL_M), self.stairs.flight.well):
+            builder.add_ground(rect, z_m)
+        for room in plan.rooms:
+            builder.add_room(room.name, room.rect.grown(-HALF_WALL_M), self.stairs.ceiling_m, z_m)
 
 
 def draw_stairs(rng: np.random.Generator, ground: FloorPlan, openings: Sequence[Opening]) -> Stairs:
@@ -155,7 +153,7 @@ def draw_upper_storey(
             stairs.flight.close_off(layout, upper=True)
         furnish(layout, source)
     lamps = _room_lamps(draw_lamps(rng, plan, ceiling_m, ground_looks.time), z_m)
-    return UpperStorey(plan, z_m, ceiling_m, stairs.flight.well, structure, layouts, lamps)
+    return UpperStorey(stairs, structure, layouts, lamps)
 
 
 def draw_upper_plan(rng: np.random.Generator, ground: FloorPlan) -> tuple[FloorPlan, tuple[Opening, ...]]:

@@ -15,11 +15,11 @@ from scipy.ndimage import binary_fill_holes, label
 
 from sim.core.errors import HouseError
 from sim.homes.housegen.imported.scene_files import library
+from sim.homes.housegen.imported.solids import thickened
 from sim.homes.importers.surfaces import Surface
 from sim.homes.importers.visual import samples, spacing_within, welded
 
 CELL_M = 0.05
-MIN_SIDE_M = 0.01
 """Thinner boxes are made as thick as this."""
 ALIKE_M = 0.025
 """Layers of a box are one box if their sides differ by less."""
@@ -66,7 +66,8 @@ def collision_boxes(corners_m: NDArray[np.float64], *, is_filled: bool = False) 
         index = np.vstack([index, cells, cells])
         points = np.vstack([points, *((corner + low) * cell_m + origin for corner in (cells, cells + 1))])
     ranges, of_cell = joined_cells(filled | inner)
-    return _thick_enough(_tight(points, index, ranges, of_cell[tuple(index.T)]))
+    boxes = thickened(_tight(points, index, ranges, of_cell[tuple(index.T)]))
+    return np.asarray(np.round(boxes, 4), dtype=np.float64)
 
 
 def _tight(
@@ -147,14 +148,6 @@ def _around(points: NDArray[np.float64], group: NDArray[np.int64], count: int) -
     boxes[firsts, :3] = np.minimum.reduceat(points[order], start, axis=0)
     boxes[firsts, 3:] = np.maximum.reduceat(points[order], start, axis=0)
     return boxes
-
-
-def _thick_enough(boxes: NDArray[np.float64]) -> NDArray[np.float64]:
-    thin = boxes[:, 3:] - boxes[:, :3] < MIN_SIDE_M
-    middle = 0.5 * (boxes[:, :3] + boxes[:, 3:])
-    low = np.where(thin, middle - 0.5 * MIN_SIDE_M, boxes[:, :3])
-    high = np.where(thin, middle + 0.5 * MIN_SIDE_M, boxes[:, 3:])
-    return np.asarray(np.round(np.hstack([low, high]), 4), dtype=np.float64)
 
 
 def joined_cells(filled: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

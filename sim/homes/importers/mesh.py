@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError, HouseError
+from sim.homes.housegen.mjcf.triangles import triangle_areas
 from sim.homes.importers.floors import LEVEL_M, NoFloorError, find_levels, level_triangles
 from sim.homes.importers.losses import Losses
 from sim.homes.importers.mesh_house import MeshConfig, MeshHouse, MeshObject, Shape, build_house, require_few
@@ -202,7 +203,9 @@ def _objects(nodes: Sequence[_Node], categories: Mapping[str, str], losses: Loss
         return objects
     floors, walls = ([item.corners_m for item in objects if item.category == name] for name in ("floor", "wall"))
     lowest_m = _lowest_m(floors, np.concatenate([item.corners_m for item in objects]))
-    floor_m2, wall_m2 = (sum(_area_m2(part[_is_level(part, lowest_m)]) for part in parts) for parts in (floors, walls))
+    floor_m2, wall_m2 = (
+        sum(triangle_areas(part[_is_level(part, lowest_m)]).sum() for part in parts) for parts in (floors, walls)
+    )
     if floor_m2 >= wall_m2:
         return objects
     cut: list[MeshObject] = []
@@ -222,15 +225,10 @@ def _lowest_m(floors: Sequence[NDArray[np.float64]], everything: NDArray[np.floa
     try:
         return find_levels(named)[0]
     except NoFloorError:
-        if _area_m2(named[level_triangles(named)]) < LEVEL_SHARE * _area_m2(named):
+        areas = triangle_areas(named)
+        if areas[level_triangles(named)].sum() < LEVEL_SHARE * areas.sum():
             raise
     return find_levels(everything)[0]
-
-
-def _area_m2(corners_m: NDArray[np.float64]) -> float:
-    """Returns the area of triangles (m, 3, 3)."""
-    normal = np.cross(corners_m[:, 1] - corners_m[:, 0], corners_m[:, 2] - corners_m[:, 0])
-    return float(0.5 * np.linalg.norm(normal, axis=1).sum())
 
 
 def _is_level(corners_m: NDArray[np.float64], height_m: float) -> NDArray[np.bool_]:

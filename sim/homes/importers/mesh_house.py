@@ -24,7 +24,6 @@ from sim.core.errors import HouseError
 from sim.core.reading import reason_of
 from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rectangles import Rect
-from sim.homes.housegen.imported.meshes import areas
 from sim.homes.importers.collision import collision_boxes, convex_parts
 from sim.homes.importers.floors import LEVEL_M, Storey, find_levels, level_triangles, make_storeys
 from sim.homes.importers.losses import Losses
@@ -73,6 +72,11 @@ class Shape:
     def corners_m(self) -> NDArray[np.float64]:
         """All triangles (m, 3, 3)."""
         return np.concatenate([surface.corners_m for surface in self.surfaces])
+
+    @property
+    def area_m2(self) -> float:
+        """Area of all triangles."""
+        return sum(surface.area_m2 for surface in self.surfaces)
 
 
 @dataclass(frozen=True, eq=False)
@@ -314,7 +318,7 @@ class _Builder:
         total, most = sum(counts[key] * copies[key] for key in shapes), self._config.triangles
         if total <= most:
             return counts
-        weights = {key: math.sqrt(counts[key] * max(_area_m2(shape), 1e-6)) for key, shape in shapes.items()}
+        weights = {key: math.sqrt(counts[key] * max(shape.area_m2, 1e-6)) for key, shape in shapes.items()}
         share = most / sum(weights[key] * copies[key] for key in shapes)
         self._losses.changes[f"Triangles were reduced to about {most}."] += 1
         return {key: max(MIN_TRIANGLES, int(weights[key] * share)) for key in shapes}
@@ -434,10 +438,6 @@ def _texture_px(objects: Sequence[MeshObject], most_px: int) -> int:
 
 def _bytes(picture: NDArray[np.uint8], most_px: int) -> float:
     return picture.nbytes * min(1.0, most_px / max(picture.shape[:2])) ** 2
-
-
-def _area_m2(shape: Shape) -> float:
-    return sum(float(areas(surface.vertices_m, surface.faces).sum()) for surface in shape.surfaces)
 
 
 def _rounded(*values: float) -> list[float]:

@@ -24,7 +24,7 @@ from sim.gl import mujoco
 from sim.homes.importers.rectilinear import rectangles_of_triangles
 from sim.homes.importers.scenes import Scene, add_room, floor_height, lower
 from sim.houses.foreign import remove_unsupported
-from sim.houses.geoms import data_at_rest
+from sim.houses.geoms import data_at_rest, mesh_triangles
 from sim.houses.labels import read_labels
 from sim.houses.load import compiled
 from sim.houses.mjcf import read_spec
@@ -197,26 +197,14 @@ def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[float]:
         if not _ROOM_BODY.fullmatch(model.body(body).name):
             continue
         geoms = np.flatnonzero((model.geom_bodyid == body) & (model.geom_type == mujoco.mjtGeom.mjGEOM_MESH))
-        rects = (
-            rectangles_of_triangles(np.vstack([_triangles(model, data, int(geom)) for geom in geoms]))
-            if len(geoms)
-            else []
-        )
+        triangles_m = [mesh_triangles(model, data, int(geom))[:, :, :2] for geom in geoms]
+        rects = rectangles_of_triangles(np.vstack(triangles_m)) if triangles_m else []
         for part, rect in enumerate(rects):
             name = f"room_room_{len(areas):02d}" + (f"_{part}" if part else "")
             add_room(spec, name, rect, top_m)
         if rects:
             areas.append(sum(rect.area_m2 for rect in rects))
     return areas
-
-
-def _triangles(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> NDArray[np.float64]:
-    """Returns the corners (n, 3, 2) in plan of the triangles of a mesh, metres."""
-    mesh = model.geom_dataid[geom]
-    first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
-    points = model.mesh_vert[first : first + count] @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
-    first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
-    return points[model.mesh_face[first : first + count]][:, :, :2]
 
 
 def _rules_of_others(model: mujoco.MjModel, rules: Mapping[str, str], changes: Counter[str]) -> dict[str, str]:

@@ -208,9 +208,7 @@ def _leaf_openings(
             ]
             zones = [leaf_keep_out(leaf, layout.plan.rooms[room].rect) for leaf in made]
             met = sum(zone.overlaps(item.footprint) for zone in zones for item in standing)
-            side = hole.side_of(room)
-            short = layout.plan.rooms[room].rect
-            depth = short.depth_m if side in ("north", "south") else short.width_m
+            depth = layout.plan.rooms[room].rect.across_m(hole.side_of(room))
             met += 3 * sum(zone.overlaps(area) for zone in zones for area in keep_free)
             choices.append((met + 10 * (depth < (hi - lo) / door.leaves + HALF_WALL_M), len(choices), made))
     return min(choices, key=lambda choice: choice[:2])[2]

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.errors import HouseError
-from sim.homes.housegen.floor_plan.rectangles import SIDES, Rect, Side, footprint
+from sim.homes.housegen.floor_plan.rectangles import SIDES, Rect, Side, footprint, outward
 from sim.homes.housegen.furniture.item import Item, Surface
 from sim.homes.housegen.furniture.reshape import fitted
-from sim.homes.housegen.furniture.transforms import geom_bounds
+from sim.homes.housegen.furniture.transforms import geom_bounds, matrix_from_euler
 from sim.homes.housegen.mjcf.placed import PlacedItem
 from sim.homes.housegen.structure.openings import HALF_WALL_M
 from sim.homes.importers.fitting import Fitted, Fitter, Place
@@ -214,7 +214,7 @@ class ObjectPlacer:
                 continue
             for side in SIDES:
                 box = _footprint(placed)
-                sign = 1.0 if side in ("east", "north") else -1.0
+                sign = outward(side)
                 into_m = sign * (box.line(side) - room.rect.line(side)) + HALF_WALL_M
                 if 0.0 < into_m <= MAX_INTO_WALL_M and not self._is_open(number, side, box):
                     dx, dy = (-sign * into_m, 0.0) if side in ("east", "west") else (0.0, -sign * into_m)
@@ -342,7 +342,4 @@ def _from_level(angle_deg: float) -> float:
 def _rotation(x_deg: float, y_deg: float, z_deg: float) -> NDArray[np.float64]:
     """Returns Unity's rotation (3, 3): about z, then x, then y."""
     x, y, z = (math.radians(angle) for angle in (x_deg, y_deg, z_deg))
-    about_x = np.array([[1, 0, 0], [0, math.cos(x), -math.sin(x)], [0, math.sin(x), math.cos(x)]])
-    about_y = np.array([[math.cos(y), 0, math.sin(y)], [0, 1, 0], [-math.sin(y), 0, math.cos(y)]])
-    about_z = np.array([[math.cos(z), -math.sin(z), 0], [math.sin(z), math.cos(z), 0], [0, 0, 1]])
-    return about_y @ about_x @ about_z
+    return matrix_from_euler(0.0, y, 0.0) @ matrix_from_euler(x, 0.0, 0.0) @ matrix_from_euler(0.0, 0.0, z)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from sim.core.errors import HouseError
 from sim.homes.housegen.floor_plan.plan import FloorPlan, Room
 from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, Interval, Rect, Side, shared_side
-from sim.homes.housegen.structure.openings import HALF_WALL_M, HEAD_M, Opening
+from sim.homes.housegen.structure.openings import HALF_WALL_M, HEAD_M, NO_LINTEL_M, Opening
 from sim.homes.importers.losses import Losses
 from sim.homes.importers.procthor_files import Hole, SourceHouse, Wall
 from sim.homes.importers.rectilinear import Point, Stretch, on_side, rectangles, slanted_edge, snapped
@@ -161,7 +161,7 @@ def _wide_open(a: int, b: int, side: Side, rect: Rect, span: Interval) -> Iterat
     """Yields an opening from floor to ceiling, except for the thickness of the walls at its ends."""
     lo, hi = span[0] + HALF_WALL_M, span[1] - HALF_WALL_M
     if hi > lo:
-        yield Opening("open", a, b, side, rect.line(side), (lo, hi), 0.0, 1e3)
+        yield Opening("open", a, b, side, rect.line(side), (lo, hi), 0.0, NO_LINTEL_M)
 
 
 def _along(first: Point, second: Point) -> Stretch | None:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from sim.core.errors import ConfigError, HouseError
 from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
-from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, Rect, Side, outward, subtract
 from sim.homes.importers.scenes import Scene, add_room, box_of
 from sim.houses.foreign import remove_unsupported
 from sim.houses.geoms import data_at_rest
@@ -70,6 +70,8 @@ ADDED = "wall_added_"
 WALL_RGBA = (0.86, 0.85, 0.82, 1.0)
 WALL_M = 3.0
 """Height of rooms without walls."""
+_SIDES: tuple[Side, ...] = ("west", "east", "south", "north")
+"""The order in which walls are added."""
 _GROUP = re.compile(r"_[a-z]+_group(?:_\w+)?$|_room$")
 _POSITIONS = ("bottom", "middle", "top")
 """Names of the parts of a stack of cabinets, which are words of other names."""
@@ -81,7 +83,7 @@ class _Room:
 
     rect: Rect
     floor: Rect
-    open_sides: tuple[str, ...]
+    open_sides: tuple[Side, ...]
 
 
 def find_scenes(path: Path) -> list[Path]:
@@ -359,7 +361,7 @@ def _close(spec: mujoco.MjSpec, rooms: list[_Room], height_m: float) -> list[str
     sides = []
     for room in rooms:
         for side in room.open_sides:
-            wall = _outside(room.floor, side)
+            wall = room.floor.strip(side, room.floor.grown(ADDED_WALL_M).span(side), 0.0, ADDED_WALL_M)
             if any(wall.overlaps(other.floor) for other in rooms if other is not room):
                 continue
             spec.worldbody.add_geom(
@@ -370,47 +372,24 @@ def _close(spec: mujoco.MjSpec, rooms: list[_Room], height_m: float) -> list[str
     return sides
 
 
-def _outside(floor: Rect, side: str) -> Rect:
-    """Returns the strip of a wall along one side of a floor, outside of it."""
-    around = floor.grown(ADDED_WALL_M)
-    return {
-        "west": Rect(around.x0, around.y0, floor.x0, around.y1),
-        "east": Rect(floor.x1, around.y0, around.x1, around.y1),
-        "south": Rect(around.x0, around.y0, around.x1, floor.y0),
-        "north": Rect(around.x0, floor.y1, around.x1, around.y1),
-    }[side]
-
-
 def _room(floor: Rect, walls: list[Rect]) -> _Room:
     """Returns a floor; each side is moved to the inner face of a wall that covers most of it."""
-    x0, y0, x1, y1 = floor.x0, floor.y0, floor.x1, floor.y1
-    closed, open_sides = {}, []
-    for side, (lo, hi) in {"west": (y0, y1), "east": (y0, y1), "south": (x0, x1), "north": (x0, x1)}.items():
-        along_x = side in ("south", "north")
-        edge = {"west": x0, "east": x1, "south": y0, "north": y1}[side]
-        inward = 1.0 if side in ("west", "south") else -1.0
+    closed: dict[Side, float] = {}
+    open_sides: list[Side] = []
+    for side in _SIDES:
+        lo, hi = floor.span(side)
         faces, spans = [], []
         for wall in walls:
-            a, b = (wall.x0, wall.x1) if along_x else (wall.y0, wall.y1)
-            near, far = (wall.y0, wall.y1) if along_x else (wall.x0, wall.x1)
-            face = far if inward > 0 else near
+            (a, b), face = wall.span(side), wall.line(OPPOSITE[side])
             beside = min(b, hi) > max(a, lo)
-            if beside and -NEAR_EDGE_M < (face - edge) * inward < NEAR_EDGE_M and b - a > far - near:
+            if beside and abs(face - floor.line(side)) < NEAR_EDGE_M and b - a > wall.short_m:
                 faces.append(face)
                 spans.append((max(a, lo), min(b, hi)))
         if faces and max(b - a for a, b in spans) >= CLOSED_SHARE * (hi - lo):
-            closed[side] = (max if inward > 0 else min)(faces)
-        if _uncovered_m(lo, hi, spans) > GAP_M:
+            closed[side] = (min if outward(side) > 0 else max)(faces)
+        if subtract((lo, hi), spans, GAP_M):
             open_sides.append(side)
-    west, east = max(x0, closed.get("west", x0)), min(x1, closed.get("east", x1))
-    south, north = max(y0, closed.get("south", y0)), min(y1, closed.get("north", y1))
+    west, east = max(floor.x0, closed.get("west", floor.x0)), min(floor.x1, closed.get("east", floor.x1))
+    south, north = max(floor.y0, closed.get("south", floor.y0)), min(floor.y1, closed.get("north", floor.y1))
     inner = floor if west >= east or south >= north else Rect(west, south, east, north)
     return _Room(inner, floor, tuple(open_sides))
-
-
-def _uncovered_m(lo: float, hi: float, spans: list[tuple[float, float]]) -> float:
-    """Returns the longest part of an interval that no span covers."""
-    longest, end = 0.0, lo
-    for a, b in sorted(spans):
-        longest, end = max(longest, a - end), max(end, b)
-    return max(longest, hi - end)

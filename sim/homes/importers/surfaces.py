@@ -23,6 +23,7 @@ from sim.core.errors import ConfigError, HouseError, ObjectNavError
 from sim.core.reading import printable, read_bytes, reason_of
 from sim.homes.housegen.imported.scene_files import gltf_parts, library, load_scene
 from sim.homes.housegen.imported.sources import Skipped, path_inside
+from sim.homes.housegen.mjcf.triangles import triangle_areas
 from sim.houses.proposals import category_of_name
 
 FORMATS = ("glb", "gltf", "obj", "ply")
@@ -85,6 +86,11 @@ class Surface:
     def corners_m(self) -> NDArray[np.float64]:
         """The corners (m, 3, 3) of the triangles: triangle, corner, xyz."""
         return self.vertices_m[self.faces]
+
+    @property
+    def area_m2(self) -> float:
+        """Area of all triangles."""
+        return float(triangle_areas(self.corners_m).sum())
 
 
 def check_installed() -> None:

@@ -10,17 +10,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from sim.homes.housegen.imported.meshes import Part, areas
+from sim.homes.housegen.imported.meshes import Part, stacked
 from sim.homes.housegen.imported.reduction import is_alike, reduced
 from sim.homes.housegen.imported.scene_files import library
 from sim.homes.housegen.imported.sources import Skipped
-from sim.homes.importers.surfaces import WHITE, Paint, Surface
+from sim.homes.housegen.mjcf.triangles import triangle_areas
+from sim.homes.importers.surfaces import WHITE, Surface
 
 WELD_M = 5e-4
 """Vertices nearer to each other than this are one when triangles are reduced."""
@@ -75,36 +76,26 @@ def _kept(surfaces: Sequence[Surface]) -> list[Skin]:
 
 
 def _skin_of(group: Sequence[Surface]) -> Skin:
-    starts = np.cumsum([0, *(len(surface.vertices_m) for surface in group)])
-    faces = np.vstack([surface.faces + start for surface, start in zip(group, starts[:-1], strict=True)])
+    vertices, faces = stacked([(surface.vertices_m, surface.faces) for surface in group])
     paint = group[0].paint
     uv = (
         None
         if paint.picture is None
         else np.vstack([surface.paint.uv for surface in group if surface.paint.uv is not None])
     )
-    return Skin(
-        np.vstack([surface.vertices_m for surface in group]), faces.astype(np.int32), paint.rgba, uv, paint.picture
-    )
+    return Skin(vertices, faces, paint.rgba, uv, paint.picture)
 
 
 def _plain(surfaces: Sequence[Surface], triangles: int) -> list[Skin]:
     """Returns a reduced mesh for each colour."""
     if not surfaces:
         return []
-    joined = [_skin_of(group) for group in _by_colour(surfaces)]
+    joined = _kept(surfaces)
     parts = [Part(patch.vertices_m, patch.faces, patch.rgba) for patch in joined]
     try:
         return [Skin(part.vertices_m, part.faces, part.rgba) for part in reduced(parts, triangles)]
     except Skipped:  # smaller than the resolution of the reduction
         return joined
-
-
-def _by_colour(surfaces: Sequence[Surface]) -> list[list[Surface]]:
-    groups: dict[tuple[float, ...], list[Surface]] = {}
-    for surface in surfaces:
-        groups.setdefault(surface.paint.rgba, []).append(replace(surface, paint=Paint(surface.paint.rgba)))
-    return list(groups.values())
 
 
 def _baked_all(surfaces: Sequence[Surface], triangles: int, texture_px: int) -> list[Skin]:
@@ -126,9 +117,7 @@ def _baked_all(surfaces: Sequence[Surface], triangles: int, texture_px: int) -> 
 
 def welded(surfaces: Sequence[Surface]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Returns vertices (n, 3) and faces (m, 3) of all surfaces as one mesh, with equal vertices joined."""
-    points = np.vstack([surface.vertices_m for surface in surfaces])
-    starts = np.cumsum([0, *(len(surface.vertices_m) for surface in surfaces)])
-    faces = np.vstack([surface.faces + start for surface, start in zip(surfaces, starts[:-1], strict=True)])
+    points, faces = stacked([(surface.vertices_m, surface.faces) for surface in surfaces])
     _, first, index = np.unique(
         np.rint(points / WELD_M).astype(np.int64), axis=0, return_index=True, return_inverse=True
     )
@@ -150,7 +139,7 @@ def _simplified(
     while target < len(faces):
         points, made = library("fast_simplification", extra="import").simplify(small, faces, target_count=target)
         points, made = np.asarray(points, dtype=np.float64) / scale + middle, np.asarray(made, dtype=np.int32)
-        made = made[areas(points, made) > 1e-10]
+        made = made[triangle_areas(points[made]) > 1e-10]
         if len(made) >= 2 and is_alike(Part(points, made, WHITE), source):
             return points, made
         target *= 2
@@ -232,7 +221,7 @@ def _picture(
 ) -> NDArray[np.uint8]:
     """Returns the picture (h, w, 3) in which each triangle shows the colours of the nearest points of the source."""
     width, height = squares.size_px
-    area_m2 = sum(float(areas(surface.vertices_m, surface.faces).sum()) for surface in surfaces)
+    area_m2 = sum(surface.area_m2 for surface in surfaces)
     spacing_m = max(texel_m, math.sqrt(area_m2 / MAX_SAMPLES))
     everything = np.concatenate([surface.corners_m for surface in surfaces])
     spacing_m = spacing_within(everything, spacing_m, 4 * MAX_SAMPLES)  # long thin triangles have many for their area
@@ -320,8 +309,7 @@ def _base_and_height(
     """Returns the first corner (m,) of the longest side of triangles, the length of this side, and the height on it."""
     sides = np.linalg.norm(corners_m[:, [1, 2, 0]] - corners_m, axis=2)  # from each corner to the next
     base = sides.max(axis=1)
-    twice = np.linalg.norm(np.cross(corners_m[:, 1] - corners_m[:, 0], corners_m[:, 2] - corners_m[:, 0]), axis=1)
-    return sides.argmax(axis=1), base, twice / np.maximum(base, 1e-12)
+    return sides.argmax(axis=1), base, 2.0 * triangle_areas(corners_m) / np.maximum(base, 1e-12)
 
 
 def _steps(wanted_px: NDArray[np.float64]) -> NDArray[np.int64]:

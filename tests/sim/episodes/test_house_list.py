@@ -146,7 +146,7 @@ def test_a_house_name_that_leads_out_of_the_cache_is_refused(split: Split, tmp_p
 
 def test_a_recipe_to_json_and_back_is_identity() -> None:
     for recipe in (STUDIO, train_recipe(7), *SPLITS["val"]):
-        assert Recipe.from_json(json.loads(json.dumps(recipe.to_json()))) == recipe
+        assert house_maker().recipe(json.loads(json.dumps(recipe.to_json())), "here") == recipe
 
 
 def test_the_cache_folder_follows_the_variable_then_xdg(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -251,7 +251,7 @@ def _generate(
     plan = house.plan
     below = " below" if config.storeys == 2 else ""
     size = f"{plan.area_m2:.0f} m2{below}, {display.counted(len(plan.rooms), 'room')}{below}"
-    summary = f"{plan.kind}, {size}, {house.geoms} geoms" + f", {house.tries} tries" * (house.tries > 1)
+    summary = f"{plan.kind}, {size}, {len(house.spec.geoms)} geoms" + f", {house.tries} tries" * (house.tries > 1)
     return Made(name, house_text(house.spec, textures), "", summary, house.rejects, seconds)
 
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.frames import Frame
-from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.floor_plan.rectangles import Rect, in_steps
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue, add_private_rows
-from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m, with_stairs_m
+from sim.homes.housegen.floor_plan.rows import add_row, draw_depth_m, draw_length_m, with_stairs_m
 
 CORE_KINDS = frozenset(("bathroom", "closet", "laundry"))
 """Rooms of the core."""
@@ -28,8 +28,7 @@ def draw_chain(
         PlanError: the rooms do not fit.
     """
     draft = Draft()
-    deep_m = tuple(round(draw_length_m(rng, 3.3, 4.0) * scale**0.5, 1) for _ in range(2))
-    deep_m = (with_stairs_m(deep_m[0], required), deep_m[1])
+    deep_m = (with_stairs_m(draw_depth_m(rng, 3.3, 4.0, scale), required), draw_depth_m(rng, 3.3, 4.0, scale))
     core_m, back_m = draw_length_m(rng, 2.2, 2.7), draw_length_m(rng, 3.1, 3.7)
     living_m = draw_length_m(rng, 3.8, 4.6)
     most_m = living_m + corridor_m + draw_length_m(rng, 4.2, 6.4)
@@ -39,7 +38,7 @@ def draw_chain(
         length_m = most_m + (behind_m2 - most_m * (corridor_m + deep_m[0])) / (corridor_m + deep_m[0] + deep_m[1])
     if length_m < most_m + 2.0:
         most_m = length_m
-    length_m, most_m = round(length_m * 20) / 20, round(most_m * 20) / 20
+    length_m, most_m = in_steps(length_m), in_steps(most_m)
     hall = draft.add("hallway", Rect(0.0, 0.0, length_m, corridor_m))
     at = most_m - corridor_m
     _add_public_rooms(rng, draft, hall, (living_m, at, most_m), (corridor_m, corridor_m + core_m, back_m))
@@ -47,7 +46,7 @@ def draw_chain(
     row = queue.fill_row(rng, at - living_m, core_m, 1.0, kinds=CORE_KINDS)
     to_rect = Frame(0.0, 0.0, "east").left(living_m, corridor_m)
     add_row(rng, draft, hall, row, at - living_m, corridor_m, to_rect)
-    add_private_rows(rng, draft, hall, queue, (most_m, length_m), corridor_m, (deep_m[0], deep_m[1]), scale)
+    add_private_rows(rng, draft, hall, queue, (most_m, length_m), corridor_m, deep_m, scale)
     return draft, hall
 
 
@@ -66,7 +65,7 @@ def _add_public_rooms(
     draft.join(hall, second, "open")
     behind = [living]
     if end_x - living_m > 6.0:
-        cut = round((living_m + (end_x - living_m) * float(rng.uniform(0.46, 0.54))) * 20) / 20
+        cut = in_steps(living_m + (end_x - living_m) * rng.uniform(0.46, 0.54))
         behind.append(draft.add("dining_room", Rect(living_m, core_y, cut, core_y + back_m)))
         draft.join(living, behind[-1], "partial")
         living_m = cut

@@ -15,7 +15,7 @@ from sim.homes.housegen.floor_plan.frames import Frame
 from sim.homes.housegen.floor_plan.great_room import draw_great_room
 from sim.homes.housegen.floor_plan.plan import FloorPlan, JoinKind, PlanError
 from sim.homes.housegen.floor_plan.programme import draw_program
-from sim.homes.housegen.floor_plan.rectangles import Interval, Rect, shared_m
+from sim.homes.housegen.floor_plan.rectangles import Interval, Rect, divided, in_steps, shared_m
 from sim.homes.housegen.floor_plan.ring_plan import draw_ring
 from sim.homes.housegen.floor_plan.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, ROOM_RULES, PlanKind
 from sim.homes.housegen.floor_plan.rows import Row, add_row, draw_common_length_m, draw_length_m, with_stairs_m
@@ -52,7 +52,7 @@ def draw_floor_plan(
     low_m, high_m = next(widths for above_m2, widths in CORRIDOR_M if area_m2 >= above_m2)
     corridor_m = draw_length_m(rng, low_m, high_m)
     if kind in ("greatroom", "split", "loop", "estate"):
-        draft, entry = _draw_new_kind(rng, kind, area_m2, required, corridor_m)
+        draft, entry = _draw_special_kind(rng, kind, area_m2, required, corridor_m)
     else:
         draft, entry = _draw_rows(rng, kind, area_m2, required, corridor_m)
     _add_loops(rng, draft)
@@ -60,7 +60,7 @@ def draw_floor_plan(
     return finish_draft(rng, draft, kind, entry)
 
 
-def _draw_new_kind(
+def _draw_special_kind(
     rng: np.random.Generator, kind: PlanKind, area_m2: float, required: Sequence[str], corridor_m: float
 ) -> tuple[Draft, int]:
     """Returns a draft of a kind with rooms outside of the rows along corridors, and the room with the front door.
@@ -184,7 +184,7 @@ def add_public_block(
             order.reverse()
         shares = np.array([ROOM_RULES[room].area_m2[1] * rng.uniform(0.85, 1.15) for room in order])
         if kind == "studio" or depth_m / width_m > 1.15 * len(order) / 2 or len(order) < 3:
-            rects = _side_by_side(shares, block)
+            rects = [Rect(block.x0, a, block.x1, b) for a, b in divided((block.y0, block.y1), shares)]
         else:
             rects = _two_deep(order, shares, block)
         doors = [
@@ -199,26 +199,18 @@ def add_public_block(
     _join_hall(rng, draft, hall, rooms, kind)
 
 
-def _side_by_side(shares: np.ndarray, block: Rect) -> list[Rect]:
-    """Returns the block divided across its depth in proportion to the shares."""
-    edges = block.y0 + np.round(np.cumsum(shares / shares.sum()) * block.depth_m * 20.0) / 20.0
-    edges = [block.y0, *edges[:-1].tolist(), block.y1]
-    return [Rect(block.x0, a, block.x1, b) for a, b in itertools.pairwise(edges)]
-
-
 def _two_deep(order: Sequence[str], shares: np.ndarray, block: Rect) -> list[Rect]:
     """Returns three rectangles: the living room across one end of the block, the other two rooms in the rest."""
     living_at = list(order).index("living_room")
-    living_m = float(shares[living_at] / shares.sum()) * block.depth_m
+    living_m = shares[living_at] / shares.sum() * block.depth_m
     if living_at == 0:
-        cut = round((block.y0 + living_m) * 20) / 20
+        cut = in_steps(block.y0 + living_m)
         living, rest = Rect(block.x0, block.y0, block.x1, cut), Rect(block.x0, cut, block.x1, block.y1)
     else:
-        cut = round((block.y1 - living_m) * 20) / 20
+        cut = in_steps(block.y1 - living_m)
         living, rest = Rect(block.x0, cut, block.x1, block.y1), Rect(block.x0, block.y0, block.x1, cut)
     first, second = (i for i in range(3) if i != living_at)
-    part = float(shares[first] / (shares[first] + shares[second]))
-    middle = round((rest.x0 + part * rest.width_m) * 20) / 20
+    middle = in_steps(rest.x0 + shares[first] / (shares[first] + shares[second]) * rest.width_m)
     rects = {
         living_at: living,
         first: Rect(rest.x0, rest.y0, middle, rest.y1),

@@ -9,10 +9,10 @@ import numpy as np
 
 from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.plan import PlanError
-from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.floor_plan.rectangles import Rect, divided, in_steps
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue, add_private_rows
 from sim.homes.housegen.floor_plan.rooms import ROOM_RULES
-from sim.homes.housegen.floor_plan.rows import draw_length_m, with_stairs_m
+from sim.homes.housegen.floor_plan.rows import draw_depth_m, with_stairs_m
 
 MIN_SHARED_M = 1.7
 """Shortest wall between two zones that gets an opening."""
@@ -27,18 +27,16 @@ def draw_great_room(
         PlanError: the rooms do not fit.
     """
     draft = Draft()
-    deep_m = tuple(round(draw_length_m(rng, 3.4, 4.1) * scale**0.5, 1) for _ in range(2))
-    deep_m = (with_stairs_m(deep_m[0], required), deep_m[1])
-    block_m = round(draw_length_m(rng, 6.8, 7.8) * scale**0.5, 1)
+    deep_m = (with_stairs_m(draw_depth_m(rng, 3.4, 4.1, scale), required), draw_depth_m(rng, 3.4, 4.1, scale))
+    block_m = draw_depth_m(rng, 6.8, 7.8, scale)
     share = float(rng.uniform(0.6, 0.8)) if area_m2 > 100.0 else 1.0
-    length_m = area_m2 / (corridor_m + deep_m[0] + share * block_m + (1.0 - share) * deep_m[1])
-    length_m = round(length_m * 20) / 20
-    great_m = round(share * length_m * 20) / 20
+    length_m = in_steps(area_m2 / (corridor_m + deep_m[0] + share * block_m + (1.0 - share) * deep_m[1]))
+    great_m = in_steps(share * length_m)
     hall = draft.add("hallway", Rect(0.0, 0.0, length_m, corridor_m))
     zones = _add_zones(rng, draft, Rect(0.0, corridor_m, great_m, corridor_m + block_m))
     _join_zones(rng, draft, hall, zones)
     queue = RoomQueue(rng, area_m2, 0.85 * (length_m * deep_m[0] + (length_m - great_m) * deep_m[1]), required)
-    add_private_rows(rng, draft, hall, queue, (great_m, length_m), corridor_m, (deep_m[0], deep_m[1]), scale)
+    add_private_rows(rng, draft, hall, queue, (great_m, length_m), corridor_m, deep_m, scale)
     return draft, hall
 
 
@@ -51,14 +49,13 @@ def _add_zones(rng: np.random.Generator, draft: Draft, block: Rect) -> list[int]
     back = ["kitchen", "dining_room"] if extra < 2 else ["kitchen", "dining_room", more[1]]
     front = ["living_room"] if extra < 1 else ["living_room", more[0]]
     weight = [sum(ROOM_RULES[kind].area_m2[1] for kind in row) for row in (front, back)]
-    cut = round((block.y0 + block.depth_m * float(np.clip(weight[0] / sum(weight), 0.52, 0.56))) * 20) / 20
+    cut = in_steps(block.y0 + block.depth_m * np.clip(weight[0] / sum(weight), 0.52, 0.56))
     zones = []
     for row, (y0, y1) in ((front, (block.y0, cut)), (back, (cut, block.y1))):
         order = [row[i] for i in rng.permutation(len(row))]
         sizes = np.array([ROOM_RULES[kind].area_m2[1] ** 0.7 * rng.uniform(0.95, 1.05) for kind in order])
-        edges = block.x0 + np.round(np.cumsum(sizes / sizes.sum()) * block.width_m * 20.0) / 20.0
-        cuts = [block.x0, *edges[:-1].tolist(), block.x1]
-        zones += [draft.add(kind, Rect(x0, y0, x1, y1)) for kind, x0, x1 in zip(order, cuts, cuts[1:], strict=False)]
+        spans = divided((block.x0, block.x1), sizes)
+        zones += [draft.add(kind, Rect(x0, y0, x1, y1)) for kind, (x0, x1) in zip(order, spans, strict=True)]
     return zones
 
 

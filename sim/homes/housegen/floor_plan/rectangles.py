@@ -6,10 +6,14 @@ World axes, metres. A side of a rectangle is named after the direction of its ou
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 Side = Literal["east", "north", "west", "south"]
 SIDES: tuple[Side, ...] = ("east", "north", "west", "south")
@@ -20,6 +24,8 @@ INWARD_YAW_RAD: dict[Side, float] = {"east": math.pi, "north": -math.pi / 2, "we
 
 Interval = tuple[float, float]
 EPS_M = 1e-6
+_STEPS_PER_M = 20.0
+"""Walls of a drawn plan are at multiples of 5 cm."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +99,10 @@ class Rect:
         """Returns the interval of a side: in y for east and west, in x for north and south."""
         return (self.y0, self.y1) if side in ("east", "west") else (self.x0, self.x1)
 
+    def across_m(self, side: Side) -> float:
+        """Returns the extent from a side to the opposite one."""
+        return self.width_m if side in ("east", "west") else self.depth_m
+
     def strip(self, side: Side, span: Interval, inward_m: float, outward_m: float = 0.0) -> Rect:
         """Returns the rectangle along `span` of a side, from `inward_m` inside to `outward_m` outside."""
         line, sign = self.line(side), outward(side)
@@ -145,6 +155,18 @@ def subtract(span: Interval, holes: Sequence[Interval], shortest_m: float = EPS_
     if span[1] - at > shortest_m:
         pieces.append((at, span[1]))
     return pieces
+
+
+def in_steps(length_m: float) -> float:
+    """Returns a length rounded to 5 cm."""
+    return round(float(length_m) * _STEPS_PER_M) / _STEPS_PER_M
+
+
+def divided(span: Interval, shares: NDArray[np.float64]) -> list[Interval]:
+    """Returns the parts of a span, as long as their shares in steps of 5 cm, in order."""
+    ends = np.cumsum(shares / shares.sum())[:-1]
+    cuts = span[0] + np.round(ends * (span[1] - span[0]) * _STEPS_PER_M) / _STEPS_PER_M
+    return list(itertools.pairwise([span[0], *cuts.tolist(), span[1]]))
 
 
 def rotated_extent(size_x_m: float, size_y_m: float, yaw_rad: float) -> tuple[float, float]:

@@ -16,9 +16,9 @@ from sim.homes.housegen.floor_plan.corridor_wing import Wing, add_wing
 from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.frames import Frame
 from sim.homes.housegen.floor_plan.plan import PlanError
-from sim.homes.housegen.floor_plan.rectangles import Rect, Side
+from sim.homes.housegen.floor_plan.rectangles import Rect, Side, in_steps
 from sim.homes.housegen.floor_plan.room_queue import WITHOUT_DAYLIGHT, RoomQueue
-from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m, with_stairs_m
+from sim.homes.housegen.floor_plan.rows import add_row, draw_depth_m, draw_length_m, with_stairs_m
 
 COURT_M = 2.0
 """Distance of a wing from the row before it, whose rooms keep their windows."""
@@ -76,7 +76,7 @@ def draw_ring(
 
 def _draw_loop(rng: np.random.Generator, area_m2: float, corridor_m: float, scale: float) -> Ring:
     """Returns the measures of a loop home."""
-    rows = [round(draw_length_m(rng, 3.4, 4.1) * scale**0.5, 1) for _ in range(3)]
+    rows = [draw_depth_m(rng, 3.4, 4.1, scale) for _ in range(3)]
     depth = draw_length_m(rng, 2.6, 3.4) if area_m2 < 210.0 else draw_length_m(rng, 4.2, 5.4)
     public = draw_length_m(rng, 4.2, 5.0) if area_m2 < 210.0 else draw_length_m(rng, 4.8, 6.0)
     if area_m2 < 180.0 or rng.random() < 0.4:
@@ -90,7 +90,7 @@ def _draw_loop(rng: np.random.Generator, area_m2: float, corridor_m: float, scal
 
 def _draw_estate(rng: np.random.Generator, area_m2: float, corridor_m: float, scale: float) -> Ring:
     """Returns the measures of an estate with two or three wings."""
-    rows = [round(draw_length_m(rng, 3.7, 4.2) * scale**0.5, 1) for _ in range(3)]
+    rows = [draw_depth_m(rng, 3.7, 4.2, scale) for _ in range(3)]
     growth = float(np.clip((area_m2 - 300.0) / 500.0, 0.0, 1.0))
     depth = round(draw_length_m(rng, 5.0, 5.8) + 2.2 * growth, 1)
     public = round(draw_length_m(rng, 5.4, 6.2) + 1.2 * growth, 1)
@@ -98,7 +98,7 @@ def _draw_estate(rng: np.random.Generator, area_m2: float, corridor_m: float, sc
     sides: list[Side] = ["north", "south", "east"]
     wings = tuple(sides[i] for i in sorted(rng.permutation(3)[:count].tolist()))
     with_row = "east" not in wings and area_m2 > 380.0
-    wing_depth = round(draw_length_m(rng, 3.6, 4.2) * scale**0.5, 1)
+    wing_depth = draw_depth_m(rng, 3.6, 4.2, scale)
     wing_length = draw_length_m(rng, 3.4, 4.6) + round(draw_length_m(rng, 3.5, 6.0) * growth, 1)
     fixed = Ring(
         width=0.0, depth=depth, corridor=corridor_m, rows=(rows[0], rows[1], rows[2] if with_row else 0.0),
@@ -116,7 +116,7 @@ def _with_width(ring: Ring, area_m2: float, width_m: tuple[float, float]) -> Rin
     c, whole = ring.corridor, ring.depth + 2 * ring.corridor
     fixed = whole * (c + ring.public + ring.rows[2]) + 0.8 * ring.public * ring.rows[0]
     fixed += len(ring.wings) * ring.wing_length * (2 * ring.wing_depth + c)
-    width = round((area_m2 - fixed) / (whole + ring.rows[0] + ring.rows[1]) * 20) / 20
+    width = in_steps((area_m2 - fixed) / (whole + ring.rows[0] + ring.rows[1]))
     if not width_m[0] <= width <= width_m[1]:
         raise PlanError(f"a core {width:.1f} m wide does not suit {area_m2:.0f} m2")
     return replace(ring, width=width)
@@ -129,7 +129,7 @@ def _add_public_rooms(rng: np.random.Generator, draft: Draft, ring: Ring, north:
     if ring.public * (y1 - y0) > 34.0:
         names = ["living_room", "dining_room"] if rng.random() < 0.5 else ["dining_room", "living_room"]
     cut = y0 + (y1 - y0) * float(rng.uniform(0.56, 0.62) if names[0] == "living_room" else rng.uniform(0.38, 0.44))
-    cuts = [y0, y1] if len(names) == 1 else [y0, round(cut * 20) / 20, y1]
+    cuts = [y0, y1] if len(names) == 1 else [y0, in_steps(cut), y1]
     rooms = [draft.add(n, Rect(x0, a, 0.0, b)) for n, a, b in zip(names, cuts, cuts[1:], strict=False)]
     if len(rooms) == 2:
         draft.join(rooms[0], rooms[1], "partial")
@@ -199,7 +199,7 @@ def add_core(
     if not middle_m:
         _add_pairs(rng, draft, queue, core, (core.rect.x0, core.rect.x1), scale)
         return
-    at = round((core.rect.centre[0] - middle_m / 2 + float(rng.uniform(-0.8, 0.8))) * 20) / 20
+    at = in_steps(core.rect.centre[0] - middle_m / 2 + rng.uniform(-0.8, 0.8))
     middle = Rect(at, core.rect.y0, round(at + middle_m, 3), core.rect.y1)
     if middle_m <= core.corridor_m:  # else the middle stays open: a courtyard
         hallway = draft.add("hallway", middle)
@@ -227,7 +227,7 @@ def _add_pairs(
         row = queue.fill_row(rng, length_m, depth_m, scale, kinds=WITHOUT_DAYLIGHT)
         add_row(rng, draft, hall, row, length_m, core.corridor_m, frame.left())
         return
-    cut_m = round(depth_m * float(rng.uniform(0.46, 0.54)) * 20) / 20
+    cut_m = in_steps(depth_m * rng.uniform(0.46, 0.54))
     for frame, hall, deep_m in ((south, core.south, cut_m), (north, core.north, depth_m - cut_m)):
         row = queue.fill_row(rng, length_m, deep_m, scale, kinds=WITHOUT_DAYLIGHT)
         add_row(rng, draft, hall, row, length_m, core.corridor_m, frame.left())

@@ -10,7 +10,7 @@ import numpy as np
 
 from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.plan import PlanError
-from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.floor_plan.rectangles import Rect, in_steps
 from sim.homes.housegen.floor_plan.rooms import GAP, ROOM_RULES, Column
 from sim.homes.housegen.floor_plan.wings import PUBLIC_KINDS
 
@@ -59,7 +59,12 @@ def with_stairs_m(depth_m: float, required: Sequence[str]) -> float:
 
 def draw_length_m(rng: np.random.Generator, low_m: float, high_m: float) -> float:
     """Returns a length between two others, in steps of 5 cm."""
-    return round(float(rng.uniform(low_m, high_m)) * 20.0) / 20.0
+    return in_steps(rng.uniform(low_m, high_m))
+
+
+def draw_depth_m(rng: np.random.Generator, low_m: float, high_m: float, scale: float) -> float:
+    """Returns the depth of a row, drawn for rooms of the usual size; it grows with the root of their area."""
+    return round(draw_length_m(rng, low_m, high_m) * scale**0.5, 1)
 
 
 def draw_common_length_m(rng: np.random.Generator, upper: Row, lower: Row, corridor_m: float) -> float:
@@ -77,7 +82,7 @@ def draw_common_length_m(rng: np.random.Generator, upper: Row, lower: Row, corri
     if low > high:
         raise PlanError(f"rows of {ranges[0][1]:.1f} m and {ranges[-1][1]:.1f} m do not fit one corridor")
     usual = float(np.mean([r[1] for r in ranges]) * rng.uniform(0.95, 1.05))
-    return round(float(np.clip(usual, low, high)) * 20.0) / 20.0
+    return in_steps(np.clip(usual, low, high))
 
 
 def _fitted_widths_m(row: Row, length_m: float, corridor_m: float) -> list[float]:

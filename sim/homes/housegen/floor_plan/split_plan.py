@@ -9,9 +9,9 @@ import numpy as np
 from sim.homes.housegen.floor_plan.corridor_wing import Wing, add_wing
 from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.frames import Frame
-from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.floor_plan.rectangles import Rect, in_steps
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue
-from sim.homes.housegen.floor_plan.rows import draw_length_m, with_stairs_m
+from sim.homes.housegen.floor_plan.rows import draw_depth_m, with_stairs_m
 
 MAX_CORE_M2 = 88.0
 """Largest floor area of the public rooms."""
@@ -35,12 +35,11 @@ def draw_split(
     _add_back_rooms(rng, draft, living, back_m, with_dining=area_m2 > 105.0)
     queue = RoomQueue(rng, area_m2, 0.75 * (area_m2 - core_m2), required)
     for side in ("west", "east"):
-        depths_m = (draw_length_m(rng, 3.3, 3.9), draw_length_m(rng, 3.3, 3.9))
-        depths_m = (round(depths_m[0] * scale**0.5, 1), round(depths_m[1] * scale**0.5, 1))
+        depths_m = (draw_depth_m(rng, 3.3, 3.9, scale), draw_depth_m(rng, 3.3, 3.9, scale))
         if side == "west":
             depths_m = (with_stairs_m(depths_m[0], required), depths_m[1])
         length_m = (area_m2 - sum(r.area_m2 for r in draft.rects)) / (sum(depths_m) + corridor_m)
-        length_m = round(length_m * (float(rng.uniform(0.44, 0.56)) if side == "west" else 1.0) * 20) / 20
+        length_m = in_steps(length_m * (rng.uniform(0.44, 0.56) if side == "west" else 1.0))
         y_m = round(float(rng.uniform(corridor_m / 2 + 0.15, living_m - corridor_m / 2 - 0.15)), 2)
         frame = Frame(0.0 if side == "west" else width_m, y_m, side)
         wing = Wing(frame=frame, before_m=0.0, length_m=length_m, depths_m=depths_m, corridor_m=corridor_m)

@@ -11,7 +11,6 @@ from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.records import zone_in_front
 from sim.homes.housegen.furnishing.placement.walls import Along
 from sim.homes.housegen.furnishing.steps import hang, hang_item_above, has_wall_above, lay_rug, place
-from sim.homes.housegen.furniture.item import Hints
 from sim.world.room_arrangement import SHOWER_TO_WALL_M, TOILET_APART_M
 from sim.world.room_requirements import GUEST_TOILET_M2
 
@@ -20,8 +19,8 @@ SMALL_M2 = 5.2
 
 ALONG: tuple[Along, ...] = ("any", "corner")
 """Positions of a toilet along its wall."""
-MIRRORS: tuple[Hints, ...] = ({}, {"width_m": 0.5}, {"width_m": 0.4})
-"""Hints of the mirrors above a basin: any, and narrow ones where no wall has room for that."""
+MIRROR_WIDTHS_M = (None, 0.5, 0.4)
+"""Widths of the mirror above a basin: any, and narrow ones where no wall has room for that."""
 MAX_TRIES = 5
 """Largest number of times that the fixtures are placed, in two orders, to leave room for a basin with a mirror."""
 RIGHT_ONLY = frozenset(("curved_cabin", "pentagon_cabin"))
@@ -118,8 +117,8 @@ def _place_basin(layout: RoomLayout, source: FurnitureSource) -> Placement | Non
     """
     small = layout.inner.area_m2 < SMALL_M2
     uses = ("cabinet", "vanity") if source.chance(0.2 if small else 0.55) else ("sink", "standing")
-    for hints in MIRRORS:
-        mirror = source.make("mirror", "wall", **hints)
+    for width_m in MIRROR_WIDTHS_M:
+        mirror = source.make("mirror", "wall", width_m=width_m)
         if mirror is None:
             continue
         above = partial(has_wall_above, layout, item=mirror)

@@ -116,6 +116,7 @@ class FurnitureSource:
         `fresh` returns another style than the calls before it if there is one, for a position where those did not fit.
         Returns None if the pool has no style that fits.
         """
+        hints = Hints(**{name: value for name, value in hints.items() if value is not None})  # type: ignore[typeddict-item]
         if category not in self._catalogue.categories:
             return None
         for use in uses or (None,):

@@ -19,7 +19,7 @@ from sim.homes.housegen.furnishing.placement.free_standing import put_in_middle
 from sim.homes.housegen.furnishing.placement.on_walls import hang_from_ceiling
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
-from sim.homes.housegen.furniture.item import Hints, Item
+from sim.homes.housegen.furniture.item import Item
 from sim.world import room_arrangement
 
 MIN_CHAIRS = 2
@@ -162,8 +162,7 @@ def _table_with_chairs(
 ) -> Placement | None:
     """Places a table of a width away from the walls, with chairs on both sides; None if it does not fit."""
     before = layout.snapshot()
-    hints: Hints = {"width_m": width_m} if width_m else {}
-    item, chair = source.make("table", "dining", **hints), source.make("chair", "dining")
+    item, chair = source.make("table", "dining", width_m=width_m), source.make("chair", "dining")
     if item is None or chair is None:
         return None
     seats = _seats(source, item, chair)

@@ -34,7 +34,9 @@ def furnish_hallway(layout: RoomLayout, source: FurnitureSource) -> None:
         hang(layout, source, "clothes", "hooks")
     _place_at_intervals(layout, source)
     if all(placement.item.category in DECORATION for placement in layout.placements):
-        _ = any(hang(layout, source, *uses) is not None for uses in ON_WALLS)
+        for uses in ON_WALLS:
+            if hang(layout, source, *uses) is not None:
+                break
     if source.chance(0.6):
         _lay_runners(layout, source)
 

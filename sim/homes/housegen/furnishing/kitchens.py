@@ -15,7 +15,7 @@ from sim.homes.housegen.furnishing.placement.floor import put_at
 from sim.homes.housegen.furnishing.placement.free_standing import put_in_middle
 from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.homes.housegen.furnishing.steps import place, put_on_top
-from sim.homes.housegen.furniture.item import Hints, Item, Look
+from sim.homes.housegen.furniture.item import Item, Look
 from sim.world.arrangement import AISLE_M, MAX_TRIANGLE_M, MIN_TRIANGLE_M
 
 WORKTOP_M = (0.62, 0.90)
@@ -39,9 +39,10 @@ def furnish_kitchen(layout: RoomLayout, source: FurnitureSource) -> None:
     kitchen_units(layout, source)
     island = _place_island(layout, source) if area > 11 and source.chance(0.8 if dining_elsewhere else 0.35) else None
     if area > 8 and not dining_elsewhere and (island is None or area > 20):
-        _ = dining_group(layout, source, around_m=0.55) or breakfast_group(layout, source)
-    elif island is None and area > 10:
-        _ = breakfast_group(layout, source) or place(layout, source, "cabinet", "sideboard", front_m=0.8)
+        if dining_group(layout, source, around_m=0.55) is None:
+            breakfast_group(layout, source)
+    elif island is None and area > 10 and breakfast_group(layout, source) is None:
+        place(layout, source, "cabinet", "sideboard", front_m=0.8)
 
 
 def kitchen_units(layout: RoomLayout, source: FurnitureSource) -> bool:
@@ -185,8 +186,7 @@ def _hang_cabinets(layout: RoomLayout, source: FurnitureSource, unit: Placement,
 def _place_island(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places a free-standing counter with stools at one side."""
     for width_m in (None, 1.3):
-        hints: Hints = {"width_m": width_m} if width_m else {}
-        item = source.make("counter", "island", **hints)
+        item = source.make("counter", "island", width_m=width_m)
         if item is None:
             return None
         front_m, across_m = item.size_m[0] / 2 + 0.4, 0.3 * item.size_m[1]

@@ -208,7 +208,7 @@ def _laundry(layout: RoomLayout, source: FurnitureSource) -> None:
     if washer is not None:
         machines = [washer, washer] if source.chance(0.5) else [washer]
         for side in sorted(SIDES, key=lambda s: -layout.walls.longest_stretch_m(s)):
-            if place_row(layout, source, machines, side, front_m=0.6):
+            if place_row(layout, source, machines, side):
                 break
         else:
             place(layout, source, "appliances", "washing_machine", front_m=0.45, tries=3)

@@ -27,7 +27,7 @@ from sim.homes.housegen.furnishing.steps import (
     place_in_front,
     put_on_top,
 )
-from sim.homes.housegen.furniture.item import Hints, Item
+from sim.homes.housegen.furniture.item import Item
 from sim.world.room_arrangement import SCREEN_FRONT_M
 
 VIEWING_M, FOCUS_DEPTH_M, BEHIND_M = (2.4, 3.2), 0.45, 0.9
@@ -42,8 +42,7 @@ def sofa_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     sofa = _sofa_with_focus(layout, source)
     faces_seats = sofa is None
     for width_m in (None, 1.5) if sofa is None else ():
-        hints: Hints = {"width_m": width_m} if width_m else {}
-        item = source.make("sofa", **hints)
+        item = source.make("sofa", width_m=width_m)
         sofa = _place_sofa(layout, source, item, _sides(layout, source)) if item is not None else None
         if sofa is not None:
             break
@@ -76,8 +75,7 @@ def _sofa_with_focus(layout: RoomLayout, source: FurnitureSource) -> Placement |
     """Places a sofa and the fireplace or the screen that it faces, a short sofa where no long one fits."""
     hearth_first = layout.kind == "living_room" and source.chance(0.35)
     for width_m in (None, None, 1.5):
-        hints: Hints = {"width_m": width_m} if width_m else {}
-        item = source.make("sofa", fresh=True, **hints)
+        item = source.make("sofa", fresh=True, width_m=width_m)
         if item is None:
             return None
         for side in _sides(layout, source):
@@ -107,7 +105,7 @@ def _sides(layout: RoomLayout, source: FurnitureSource) -> list[Side]:
 def _place_sofa(layout: RoomLayout, source: FurnitureSource, item: Item, sides: Sequence[Side]) -> Placement | None:
     """Places a sofa in the middle of the first wall that fits; in a deep room away from it, nearer to what it faces."""
     for side in sides:
-        depth_m = layout.inner.width_m if side in ("east", "west") else layout.inner.depth_m
+        depth_m = layout.inner.across_m(side)
         gap_m = depth_m - item.size_m[0] - FOCUS_DEPTH_M - source.uniform(*VIEWING_M)
         if gap_m < BEHIND_M or (depth_m < 5.5 and source.chance(0.6)):
             gap_m = WALL_GAP_M

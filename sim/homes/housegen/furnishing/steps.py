@@ -21,7 +21,8 @@ from sim.world.room_arrangement import FROM_FIRE_M, SCREEN_FRONT_M
 
 RUNNER_M = 1.0
 """Rugs narrower than this are runners."""
-ROW_GAP_M = 0.004
+ROW_GAP_M, ROW_FRONT_M = 0.004, 0.6
+"""Gap between the items of a row, and the floor kept free in front of them."""
 BESIDE_M = 0.05
 """Gap between an item and the one that it is placed beside."""
 _TOP_USES = {
@@ -155,9 +156,9 @@ def lay_rug(
 
     `size_m` is its depth and width. Returns False if no item fits there.
     """
-    hints: Hints = {"depth_m": size_m[0], "width_m": size_m[1]} if size_m else {}
+    depth_m, width_m = size_m or (None, None)
     for n in range(3):
-        rug = source.make("floor", "rug", fresh=n > 0, **hints)
+        rug = source.make("floor", "rug", fresh=n > 0, depth_m=depth_m, width_m=width_m)
         if rug is None:
             return False
         if (runner is None or runner == (min(rug.size_m[:2]) < RUNNER_M)) and lay_flat(layout, rug, x_m, y_m, yaw_rad):
@@ -195,18 +196,16 @@ def top_uses(layout: RoomLayout, source: FurnitureSource, host: Placement) -> tu
     return ("entry", "top") if layout.kind == "hallway" else ("top", "shelf")
 
 
-def place_row(
-    layout: RoomLayout, source: FurnitureSource, items: Sequence[Item], side: Side, *, front_m: float
-) -> list[Placement]:
+def place_row(layout: RoomLayout, source: FurnitureSource, items: Sequence[Item], side: Side) -> list[Placement]:
     """Places items side by side along a wall, in this order or in reverse; an empty list if not all fit."""
     forwards, backwards = list(items), list(reversed(items))
     for order in (forwards, backwards) if source.chance(0.5) else (backwards, forwards):
-        at = find_row_start(layout, order, side, front_m, ROW_GAP_M) if order else None
+        at = find_row_start(layout, order, side, ROW_FRONT_M, ROW_GAP_M) if order else None
         if at is None:
             continue
         placed = []
         for item in order:
-            spot = put_near(layout, item, side, at + item.size_m[1] / 2, front_m=front_m, slide_m=0.0)
+            spot = put_near(layout, item, side, at + item.size_m[1] / 2, front_m=ROW_FRONT_M, slide_m=0.0)
             if spot is not None:
                 placed.append(spot)
             at += item.size_m[1] + ROW_GAP_M

@@ -9,7 +9,7 @@ import math
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, polar
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset, polar
 from sim.homes.housegen.furniture.shapes import Ring, arc_wall, chamfered_box, loft, turned
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -68,8 +68,7 @@ def lounge(w: Workbench) -> None:
     width, depth, height = w.width(0.66, 0.76), w.depth(0.72, 0.82), w.length(0.76, 0.84)
     seat, wood, cloth = w.length(0.38, 0.42), w.look("wood"), w.look("fabric")
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
-    for side in BOTH_SIDES:
-        y = side * (half - 0.02)
+    for y in inset((-half, half), 0.02):
         w.bar((x1 - 0.06, y, 0.0), (x1 - 0.10, y, 0.56), 0.04, 0.045, wood)
         w.bar((x0 + 0.06, y, 0.0), (x0 + 0.14, y, 0.52), 0.04, 0.045, wood)
         w.bar((x1 - 0.02, y, 0.575), (x0 + 0.08, y, 0.53), 0.07, 0.028, wood)
@@ -92,8 +91,7 @@ def rocker(w: Workbench) -> None:
     half, seat, height = 0.5 * w.length(0.56, 0.64), w.length(0.41, 0.45), w.length(1.0, 1.10)
     wood, cloth = w.look("wood"), w.look("fabric")
     curve = [(-0.46, 0.10), (-0.28, 0.035), (-0.05, 0.013), (0.18, 0.02), (0.38, 0.07)]
-    for side in BOTH_SIDES:
-        y = side * (half - 0.02)
+    for y in inset((-half, half), 0.02):
         w.bent_rod([(x, y, z) for x, z in curve], 0.013, wood)
         w.rod((0.22, y, 0.03), (0.20, y, 0.64), 0.018, wood)
         w.rod((-0.24, y, 0.03), (-0.20, y, seat), 0.018, wood)
@@ -174,8 +172,7 @@ def cane_chair(w: Workbench) -> None:
     width, depth, height = w.width(0.64, 0.72), w.depth(0.68, 0.76), w.length(0.78, 0.88)
     seat, wood, cane, cloth = w.length(0.39, 0.43), w.look("wood"), w.look("wicker"), w.look("fabric")
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
-    for side in BOTH_SIDES:
-        y = side * (half - 0.02)
+    for y in inset((-half, half), 0.02):
         for x in (x0 + 0.04, x1 - 0.04):
             w.box(around(x, 0.02), around(y, 0.02), (0.0, 0.60), wood)
         w.box((x0 + 0.02, x1 - 0.02), around(y, 0.025), (0.58, 0.62), wood)

@@ -14,7 +14,7 @@ from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look, MeshShape
 from sim.homes.housegen.furniture.parts import BOTH_SIDES, around
-from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, drape, loft, named_mesh
+from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, drape, loft, named_mesh, ring_faces
 from sim.homes.housegen.furniture.workbench import CORNERS, Workbench
 
 
@@ -76,20 +76,12 @@ def _hollow(
 
     The hollow is the outline scaled about `centre` by `rim` at the top and by `floor` at the bottom.
     """
-    n = len(outline)
 
     def ring(scale: float, z: float) -> list[tuple[float, float, float]]:
         return [(centre[0] + scale * (x - centre[0]), centre[1] + scale * (y - centre[1]), z) for x, y in outline]
 
     vertices = [*ring(1.0, 0.0), *ring(1.0, high), *ring(rim, high), *ring(floor, deep)]
-    faces: list[tuple[int, int, int]] = []
-    for level in range(3):
-        for i in range(n):
-            p, q = level * n + i, level * n + (i + 1) % n
-            faces += [(p, q, q + n), (p, q + n, p + n)]
-    for i in range(1, n - 1):
-        faces += [(0, i + 1, i), (3 * n, 3 * n + i, 3 * n + i + 1)]
-    return named_mesh("tub", vertices, faces)
+    return named_mesh("tub", vertices, ring_faces(4, len(outline)))
 
 
 def freestanding(w: Workbench) -> None:

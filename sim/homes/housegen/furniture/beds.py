@@ -7,11 +7,13 @@ Sizes follow usual mattress sizes (0.90, 1.40, 1.60, 1.80 m by 1.90-2.10 m; EN 1
 from __future__ import annotations
 
 import itertools
+import math
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
-from sim.homes.housegen.furniture.shapes import chamfered_box, pillow
+from sim.homes.housegen.furniture.item import MeshShape
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
+from sim.homes.housegen.furniture.shapes import chamfered_box, named_mesh, pillow
 from sim.homes.housegen.furniture.workbench import Workbench
 
 _MATTRESS = 0.22
@@ -34,7 +36,7 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float) -
     linen, duvet = w.look("linen"), w.look("bedding")
     w.mesh(chamfered_box((length, width, _MATTRESS), 0.04), (x0 + 0.5 * length, 0.0, top - 0.5 * _MATTRESS), linen)
     cover = w.length(0.60, 0.75) * length
-    shape = parts.duvet(w, cover, width + 0.05, 0.19)
+    shape = _duvet(w, cover, width + 0.05, 0.19)
     w.mesh(shape, (x0 + length - 0.5 * cover + 0.015, 0.0, top - 0.145), duvet)
     fold = w.length(0.18, 0.28)
     w.mesh(
@@ -48,6 +50,37 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float) -
         y = (i - 0.5 * (count - 1)) * width / count
         w.mesh(pillow((0.46, pitch, 0.16), 4.0), (x0 + 0.27, y, top + 0.055), linen, tilt=-0.12)
     w.top((x0 + length - cover + 0.3, x0 + length - 0.15), centred(width, 0.15), top + 0.045, "seat")
+
+
+def _duvet(w: Workbench, length: float, width: float, thick: float) -> MeshShape:
+    """Returns a soft cover that lies on z = 0 with its middle at the origin: thick, with shallow folds and round edges.
+
+    Its sides hang straight down; the shape of its folds is drawn.
+    """
+    xs, ys = (-1.0, -0.55, -0.1, 0.4, 0.85, 1.0), (-1.0, -0.9, -0.62, -0.3, 0.0, 0.32, 0.6, 0.9, 1.0)
+    phase, slant, bumps = w.rng.uniform(0.0, 6.28), w.rng.uniform(-2.5, 2.5), w.rng.uniform(-1.0, 1.0, (6, 9))
+    rows, columns = len(xs), len(ys)
+    points = []
+    for i, u in enumerate(xs):
+        for j, v in enumerate(ys):
+            edge = 0.35 * thick * (abs(v) == 1.0) + 0.3 * thick * (u == 1.0)
+            fold = 0.0 if edge else 0.011 * math.sin(7.0 * v + slant * u + phase) + 0.009 * bumps[i, j]
+            points.append((0.5 * length * u, 0.5 * width * v, thick - edge + fold))
+    rim = [*((0, j) for j in range(columns)), *((i, columns - 1) for i in range(1, rows))]
+    rim += [*((rows - 1, j) for j in range(columns - 2, -1, -1)), *((i, 0) for i in range(rows - 2, 0, -1))]
+    ids, start = [i * columns + j for i, j in rim], len(points)
+    points += [(points[k][0], points[k][1], 0.0) for k in ids]
+    points.append((0.0, 0.0, 0.0))
+    faces = []
+    for i in range(rows - 1):
+        for j in range(columns - 1):
+            a, b, c, d = i * columns + j, (i + 1) * columns + j, (i + 1) * columns + j + 1, i * columns + j + 1
+            faces += [(a, b, c), (a, c, d)]
+    for k, upper in enumerate(ids):
+        after = (k + 1) % len(ids)
+        faces += [(upper, ids[after], start + after), (upper, start + after, start + k)]
+        faces.append((start + k, start + after, len(points) - 1))
+    return named_mesh("duvet", points, faces)
 
 
 def panel(w: Workbench) -> None:
@@ -133,8 +166,7 @@ def storage(w: Workbench) -> None:
     w.box((-0.25, 0.0), (-half, half), (0.0, 0.55), look)
     w.box((-0.25, -0.23), (-half, half), (0.55, head), look)
     w.box((-0.25, 0.0), (-half, half), (head - 0.02, head), look)
-    for side in BOTH_SIDES:
-        y = side * (half - 0.01)
+    for y in inset((-half, half), 0.01):
         w.box((-0.23, 0.0), around(y, 0.01), (0.55, head - 0.02), look)
     w.top((-0.21, -0.02), (-half + 0.05, half - 0.05), 0.55)
     _bedding(w, 0.005, length, width, top)

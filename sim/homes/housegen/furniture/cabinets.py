@@ -58,8 +58,7 @@ def armoire(w: Workbench) -> None:
     parts.plain_drawers(w, x[1], y, (0.16, 0.40), 1, 1, wood, w.look("brass"), "cup")
     parts.plain_doors(w, x[1], y, (0.40, height - 0.09), 2, wood, w.look("brass"), "knob")
     panel = wood if wood.texture is None else w.look("wood")
-    for side in BOTH_SIDES:
-        c = side * 0.25 * width
+    for c in (-0.25 * width, 0.25 * width):
         for z in ((0.50, 0.95), (1.10, height - 0.20)):
             w.mesh(
                 chamfered_box((0.03, 0.30 * width, z[1] - z[0]), 0.014),
@@ -95,8 +94,7 @@ def display(w: Workbench) -> None:
     w.box((x[0], x[1] + 0.025), y, (base, base + 0.025), look)
     front = x[1] - 0.10
     w.box((x[0], x[0] + 0.012), y, (base + 0.025, height), look)
-    for side in BOTH_SIDES:
-        edge = side * (0.5 * width - 0.011)
+    for edge in centred(width, 0.011):
         w.box((x[0], front), around(edge, 0.011), (base + 0.025, height), look)
     for z in (base + 0.40, base + 0.72):
         w.box((x[0] + 0.012, front - 0.02), inset(y, 0.02), (z, z + 0.016), look)
@@ -122,11 +120,9 @@ def tambour(w: Workbench) -> None:
     for i in range(slats):
         c = y[0] + (i + 0.5) * width / slats
         w.box((x, x + 0.016), around(c, 0.30 * width / slats), (0.18, height - 0.02), wood, solid=False)
-    for side in BOTH_SIDES:
-        c = side * (0.5 * width - 0.15)
+    for c in centred(width, 0.15):
         w.box(centred(depth, 0.03), around(c, 0.01), (0.0, 0.02), metal)
-        for sx in BOTH_SIDES:
-            cx = sx * (0.5 * depth - 0.04)
+        for cx in centred(depth, 0.04):
             w.box(around(cx, 0.01), around(c, 0.01), (0.02, 0.16), metal)
 
 

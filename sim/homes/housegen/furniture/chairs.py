@@ -57,11 +57,8 @@ def _wooden_frame(w: Workbench, f: _Frame, wood: Look, thick: float) -> None:
         w.box(around(x, 0.01), (-f.half + thick, f.half - thick), (f.seat - 0.08, f.seat - 0.02), wood)
 
 
-def _crossbar(
-    w: Workbench, f: _Frame, z: tuple[float, float], thick: float, look: Look, half: float | None = None
-) -> None:
+def _crossbar(w: Workbench, f: _Frame, z: tuple[float, float], thick: float, look: Look, half: float) -> None:
     """Adds a level board of the back between heights z that follows the rake of the back."""
-    half = f.half if half is None else half
     x = f.back_x(0.5 * (z[0] + z[1])) + 0.5 * thick
     tilt = -math.atan2(f.rake, f.height - f.seat)
     w.box(around(x, 0.5 * thick), (-half, half), z, look, tilt=tilt)

@@ -72,8 +72,7 @@ def clothes_rack(w: Workbench) -> None:
     """Builds a steel rail on two posts with hanging garments."""
     width, height = w.width(0.9, 1.3), w.length(1.5, 1.7)
     metal = w.look("metal")
-    for side in BOTH_SIDES:
-        y = side * 0.5 * width
+    for y in centred(width):
         w.cylinder((0.0, y), (0.02, height), 0.013, metal)
         w.rod_x((y, 0.013), (-0.22, 0.22), 0.013, metal)
     w.rod_y((0.0, height - 0.013), centred(width), 0.013, metal)
@@ -173,8 +172,7 @@ def laundry_basket(w: Workbench) -> None:
 def open_wardrobe(w: Workbench) -> None:
     """Builds a wooden clothes stand: a rail between two A-frames, a shelf with shoes, and garments in a row."""
     width, high, wood = w.width(0.90, 1.25), w.length(1.45, 1.60), w.look("wood")
-    for side in BOTH_SIDES:
-        y = side * (0.5 * width - 0.02)
+    for y in centred(width, 0.02):
         w.bar((-0.24, y, 0.0), (0.015, y, high), 0.03, 0.035, wood)
         w.bar((0.24, y, 0.0), (-0.015, y, high), 0.03, 0.035, wood)
         w.box((-0.20, 0.20), around(y, 0.012), (0.20, 0.23), wood)

@@ -7,6 +7,7 @@ Neufert, Architects' Data, for islands and bars.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
@@ -17,6 +18,8 @@ from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 _TOP = 0.035
 """Thickness of a worktop."""
+_HOB_APART = 0.9
+"""Distance between the middles of a sink and a hob that leaves 0.3 m of worktop between them."""
 _OPEN_BAY = 0.3
 """Least width of the open shelf next to a cupboard; the cupboard takes up what is less."""
 
@@ -34,10 +37,58 @@ def _run_base(w: Workbench, x: Range, y: Range, z: float, look: Look, hole: tupl
     w.box((x[1] - 0.04, x[1]), (hy0, hy1), (z - 0.16, z), look)
 
 
-def _free_tops(w: Workbench, x: Range, free: list[Range], z: float, *, back: float = 0.05) -> None:
-    """Declares the parts of a worktop without sink and hob as surfaces on which objects may stand."""
-    for span in free:
+def _worktop(w: Workbench, x: Range, y: Range, top: float, look: Look, hole: tuple[Range, Range] | None) -> None:
+    """Adds a slab with its upper face at `top`, if asked with a hole for a sink, given as x and y ranges."""
+    z = (top - _TOP, top)
+    if hole is None:
+        w.box(x, y, z, look)
+        return
+    (hx0, hx1), (hy0, hy1) = hole
+    w.box(x, (y[0], hy0), z, look)
+    w.box(x, (hy1, y[1]), z, look)
+    w.box((x[0], hx0), (hy0, hy1), z, look)
+    w.box((hx1, x[1]), (hy0, hy1), z, look)
+
+
+def _fittings(w: Workbench, x: Range, y: Range, z: float, *, back: float = 0.05) -> tuple[Range, Range] | None:
+    """Adds a sink and a hob to a worktop with its upper face at z; hints `with_sink`, `with_hob`.
+
+    Objects may stand on the rest of the worktop, `back` away from its rear edge.
+
+    Returns:
+        The x and y ranges of the sink's hole, or None.
+    """
+    width, taken, hole, sink_y = y[1] - y[0], [], None, None
+    with_sink = width >= 0.75 and w.flag("with_sink", 0.35)
+    with_hob = width > 1.3 and w.flag("with_hob", 0.25)
+    if with_sink:
+        from_end = 0.38 if with_hob else 0.6  # 0.3 m of worktop before a cooker at the end
+        sink_y = w.length(y[0] + from_end, y[1] - from_end) if width > 2 * from_end else 0.5 * (y[0] + y[1])
+        low, high = y[1] - 0.36 - _HOB_APART, y[0] + 0.36 + _HOB_APART
+        if with_hob and y[0] + 0.3 < low < sink_y < high:
+            sink_y = low
+        w.put(w.make("sink", use="inset"), (0.0, sink_y, z - 0.18))
+        hole = ((-0.20, 0.20), around(sink_y, 0.24))
+        taken.append(around(sink_y, 0.30))
+    if with_hob:
+        places = [p for p in inset(y, 0.36) if sink_y is None or abs(p - sink_y) > _HOB_APART - 0.01]
+        if places:
+            place = w.choice(places)
+            w.put(w.make("appliances", use="hob"), (0.0, place, z))
+            taken.append(around(place, 0.32))
+    for span in _free_ranges(y, taken):
         w.top(inset(x, back, 0.05), inset(span, 0.05), z)
+    return hole
+
+
+def _free_ranges(y: Range, taken: Sequence[Range]) -> list[Range]:
+    """Returns the parts of a range outside the taken ones that are longer than 0.25 m."""
+    free, start = [], y[0]
+    for low, high in sorted(taken):
+        free.append((start, low))
+        start = high
+    free.append((start, y[1]))
+    return [r for r in free if r[1] - r[0] > 0.25]
 
 
 def kitchen_run(w: Workbench) -> None:
@@ -45,11 +96,11 @@ def kitchen_run(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.88, 0.92)
     front, top = w.look("lacquer") if w.chance(0.6) else w.look("wood"), w.look("stone")
     x, y = parts.footprint(depth, width)
-    hole, free = parts.worktop_fittings(w, y, height)
+    hole = _fittings(w, x, y, height)
     under = height - _TOP
     face = x[1] - 0.04
     _run_base(w, (x[0], face), y, under, front, hole)
-    parts.worktop(w, x, y, (height - _TOP, height), top, hole)
+    _worktop(w, x, y, height, top, hole)
     count = max(1, round(width / 0.6))
     pitch = width / count
     drawer_unit = w.whole(0, count - 1)
@@ -60,7 +111,6 @@ def kitchen_run(w: Workbench) -> None:
             parts.plain_drawers(w, face, span, (0.11, under), 3, 1, front, metal, "bar")
         else:
             parts.plain_doors(w, face, span, (0.11, under), 1, front, metal, "bar")
-    _free_tops(w, x, free, height)
 
 
 def island(w: Workbench) -> None:
@@ -84,8 +134,8 @@ def open_run(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.92)
     steel, wood, front = w.look("metal"), w.look("wood"), w.look("lacquer")
     x, y = parts.footprint(depth, width)
-    hole, free = parts.worktop_fittings(w, y, height)
-    parts.worktop(w, x, y, (height - _TOP, height), wood, hole)
+    hole = _fittings(w, x, y, height)
+    _worktop(w, x, y, height, wood, hole)
     w.legs(inset(x, 0.01, 0.02), inset(y, 0.01), (0.0, height - _TOP), 0.045, steel)
     w.box(inset(x, 0.02, 0.03), inset(y, 0.03), (0.18, 0.205), wood)
     low = high = math.inf
@@ -106,7 +156,6 @@ def open_run(w: Workbench) -> None:
     for c in ((n + 0.5) * width / count - 0.5 * width for n in range(count)):
         if not low - 0.21 < c < high + 0.21:
             w.mesh(chamfered_box((0.40, 0.34, 0.26), 0.015), (0.0, c, 0.335), w.look("wicker"), solid=False)
-    _free_tops(w, x, free, height)
 
 
 def slab_run(w: Workbench) -> None:
@@ -114,10 +163,10 @@ def slab_run(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.89, 0.93)
     front, top = w.look("lacquer") if w.chance(0.5) else w.look("wood"), w.look("stone")
     x, y = parts.footprint(depth, width)
-    hole, free = parts.worktop_fittings(w, y, height)
+    hole = _fittings(w, x, y, height, back=0.06)
     under, face = height - _TOP, x[1] - 0.03
     _run_base(w, (x[0], face), y, under, w.look("dark"), hole)
-    parts.worktop(w, x, y, (height - _TOP, height), top, hole)
+    _worktop(w, x, y, height, top, hole)
     w.box((x[0], x[0] + 0.018), y, (height, height + 0.045), top)
     count = max(1, round(width / 0.9))
     pitch = width / count
@@ -126,7 +175,6 @@ def slab_run(w: Workbench) -> None:
         span = (y[0] + i * pitch + 0.003, y[0] + (i + 1) * pitch - 0.003)
         w.box((face, face + 0.02), span, (0.105, split - 0.015), front, solid=False)
         w.box((face, face + 0.02), span, (split + 0.003, under - 0.02), front, solid=False)
-    _free_tops(w, x, free, height, back=0.06)
 
 
 def breakfast_bar(w: Workbench) -> None:
@@ -181,9 +229,9 @@ def curtained_run(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.91)
     wood, pier, cloth = w.look("wood"), w.look("lacquer"), w.look("curtain")
     x, y = parts.footprint(depth, width)
-    hole, free = parts.worktop_fittings(w, y, height)
+    hole = _fittings(w, x, y, height)
     under = height - _TOP
-    parts.worktop(w, x, y, (height - _TOP, height), wood, hole)
+    _worktop(w, x, y, height, wood, hole)
     w.box((x[0], x[0] + 0.03), y, (0.0, under), pier)
     bays = max(1, round(width / 0.8))
     pitch = (width - 0.10) / bays
@@ -192,7 +240,6 @@ def curtained_run(w: Workbench) -> None:
         beside_sink = hole is None or not hole[1][0] - 0.06 < c < hole[1][1] + 0.06
         w.box((x[0] + 0.03 if beside_sink else x[1] - 0.10, x[1] - 0.03), around(c, 0.05), (0.0, under), pier)
     if width <= 0.3:  # two piers, without a curtain between them
-        _free_tops(w, x, free, height)
         return
     w.rod_y((x[1] - 0.05, under - 0.03), inset(y, 0.1), 0.008, w.look("iron"), solid=False)
     for i in range(bays):
@@ -201,7 +248,6 @@ def curtained_run(w: Workbench) -> None:
             drape(round(pitch - 0.11, 3), round(under - 0.08, 3), 0.035, 6), (x[1] - 0.07, c, 0.05), cloth, solid=False
         )
     w.box(inset(x, 0.03, 0.10), inset(y, 0.1), (0.0, 0.45), w.look("dark"))
-    _free_tops(w, x, free, height)
 
 
 def waterfall(w: Workbench) -> None:

@@ -7,7 +7,7 @@ Usual retail dimensions: treadmills 1.70-2.10 m long, 0.75-0.90 m wide, 1.30-1.5
 from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.shapes import chamfered_box
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -79,7 +79,7 @@ def exercise_bike(w: Workbench) -> None:
             solid=False,
         )
         w.box(
-            (0.09 * side + 0.0, 0.09 * side + 0.12),
+            (0.09 * side, 0.09 * side + 0.12),
             around(side * 0.14, 0.05),
             (0.325 - side * 0.12, 0.345 - side * 0.12),
             dark,
@@ -90,19 +90,16 @@ def exercise_bike(w: Workbench) -> None:
 def dumbbell_rack(w: Workbench) -> None:
     """Builds a sloped rack with two rows of hexagonal dumbbells."""
     half, metal, rubber = 0.5 * w.width(0.95, 1.25), w.look("iron"), w.look("rubber")
-    for side in BOTH_SIDES:
-        y = side * (half - 0.03)
+    for y in inset((-half, half), 0.03):
         w.box((-0.25, 0.28), around(y, 0.03), (0.0, 0.06), metal)
         w.bar((0.20, y, 0.04), (-0.16, y, 0.82), 0.05, 0.07, metal)
     count = 4
     for x, z in ((0.09, 0.36), (-0.06, 0.70)):
         for dx in (-0.10, 0.10):
-            w.bar(
-                (x + dx, -half, z - 0.10 * dx / 0.1 * 0.3), (x + dx, half, z - 0.10 * dx / 0.1 * 0.3), 0.03, 0.05, metal
-            )
+            w.bar((x + dx, -half, z - 0.3 * dx), (x + dx, half, z - 0.3 * dx), 0.03, 0.05, metal)
         for i in range(count):
             y = (i + 0.5) * (2 * half - 0.1) / count - half + 0.05
-            w.rod((x - 0.14, y, z + 0.10), (x + 0.14, y, z + 0.10 - 0.05), 0.015, w.look("chrome"), solid=False)
+            w.rod((x - 0.14, y, z + 0.10), (x + 0.14, y, z + 0.05), 0.015, w.look("chrome"), solid=False)
             for dx in (-0.10, 0.10):
                 w.rod(
                     (x + dx - 0.04, y, z + 0.08 - 0.2 * dx + 0.01),

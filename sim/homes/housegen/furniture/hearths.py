@@ -33,8 +33,7 @@ def _opening(w: Workbench, x: Range, half: float, z: Range, outer: float, top: f
     w.box((x[0], x[0] + 0.04), (-half, half), (0.0, z[1]), char)
     if z[0] > 0:
         w.box((x[0] + 0.04, x[1]), (-half, half), (0.0, z[0]), look)
-    for side in BOTH_SIDES:
-        edge = side * (half - 0.004)
+    for edge in inset((-half, half), 0.004):
         w.box(inset(x, 0.04, 0.02), around(edge, 0.004), z, char, solid=False)
 
 
@@ -120,8 +119,7 @@ def rustic_stone(w: Workbench) -> None:
     _opening(w, (0.0, depth), half, (0.0, high), outer, top - 0.09, stone)
     w.box((0.0, 0.8 * depth), (-0.72 * outer, 0.72 * outer), (top, top + 0.55), stone)
     w.box((0.0, depth + 0.14), (-outer - 0.08, outer + 0.08), (top - 0.09, top), w.look("wood"))
-    for side in BOTH_SIDES:
-        c = side * (outer - 0.16)
+    for c in inset((-outer, outer), 0.16):
         w.box((depth, depth + 0.09), around(c, 0.06), (top - 0.22, top - 0.09), stone, solid=False)
     w.box((depth, depth + 0.38), (-outer, outer), (0.0, 0.06), w.look("stone"))
     w.box((depth - 0.10, depth - 0.08), (-half + 0.03, half - 0.03), (0.0, 0.30), w.look("iron"), solid=False)

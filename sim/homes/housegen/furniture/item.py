@@ -22,12 +22,12 @@ Pool = Literal["train", "heldout"]
 
 
 class Hints(TypedDict, total=False):
-    """What a room asks of an item; the tables of `Catalogue.make_item` explain each key."""
+    """What a room asks of an item; the tables of `Catalogue.make_item` explain each key. None: it asks for nothing."""
 
     use: str | None
-    width_m: float
-    depth_m: float
-    height_m: float
+    width_m: float | None
+    depth_m: float | None
+    height_m: float | None
     looks: Mapping[str, Look] | None
     with_sink: bool
     with_hob: bool

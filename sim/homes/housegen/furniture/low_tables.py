@@ -74,8 +74,7 @@ def coffee_blocks(w: Workbench) -> None:
     """Builds a coffee table with a stone slab on two stone blocks."""
     width, depth, height, stone = w.width(0.95, 1.25), w.depth(0.55, 0.70), w.length(0.32, 0.38), w.look("stone")
     parts.slab(w, depth, width, (height - 0.05, height), stone)
-    for side in BOTH_SIDES:
-        y = side * 0.28 * width
+    for y in (-0.28 * width, 0.28 * width):
         w.box((-0.36 * depth, 0.36 * depth), around(y, 0.07), (0.0, height - 0.05), stone)
 
 
@@ -153,8 +152,7 @@ def console_arc(w: Workbench) -> None:
     """Builds a narrow hall table: a stone shelf on two metal hoops."""
     width, depth, height, metal = w.width(0.90, 1.20), w.depth(0.30, 0.38), w.length(0.76, 0.82), w.look("brass")
     parts.slab(w, depth, width, (height - 0.03, height), w.look("stone"))
-    for side in BOTH_SIDES:
-        y = side * (0.5 * width - 0.10)
+    for y in centred(width, 0.10):
         w.box(centred(depth, 0.02), around(y, 0.012), (0.0, 0.025), metal)
         for x in centred(depth, 0.03):
             w.box(around(x, 0.012), around(y, 0.012), (0.0, height - 0.03), metal)
@@ -173,8 +171,7 @@ def console_drawers(w: Workbench) -> None:
     x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.025, height), wood)
     w.box(inset(x, 0.02, 0.025), inset(y, 0.02), (height - 0.16, height - 0.025), wood)
-    for side in BOTH_SIDES:
-        c = side * 0.24 * width
+    for c in (-0.24 * width, 0.24 * width):
         w.box((x[1] - 0.025, x[1] - 0.012), around(c, 0.2 * width), (height - 0.15, height - 0.035), wood, solid=False)
         w.ball((x[1] - 0.004, c, height - 0.09), 0.014, metal, solid=False)
     w.legs(inset(x, 0.03), inset(y, 0.03), (0.0, height - 0.15), 0.045, wood, round_=True)

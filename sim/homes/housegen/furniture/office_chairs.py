@@ -88,8 +88,7 @@ def executive(w: Workbench) -> None:
             leather,
             tilt=-0.16,
         )
-    for side in BOTH_SIDES:
-        y = side * half
+    for y in (-half, half):
         w.mesh(chamfered_box((0.32, 0.07, 0.05), 0.02), (0.0, y, seat + 0.21), leather)
         w.bar((0.12, y, seat + 0.20), (0.06, y * 0.9, seat - 0.06), 0.03, 0.04, dark)
         w.bar((-0.13, y, seat + 0.20), (-0.14, y * 0.9, seat - 0.06), 0.03, 0.04, dark)

@@ -39,8 +39,7 @@ def upright_piano(w: Workbench) -> None:
     w.box((-0.30, 0.02), (-half, half), (0.05, high), look)
     w.box((-0.31, 0.05), (-half - 0.01, half + 0.01), (high, high + 0.025), look)
     w.box((0.02, 0.28), (-half, half), (0.58, 0.72), look)
-    for side in BOTH_SIDES:
-        c = side * (half - 0.03)
+    for c in inset((-half, half), 0.03):
         w.box((-0.30, 0.30), around(c, 0.03), (0.0, 0.06), look)
         w.box((0.22, 0.28), around(c, 0.03), (0.05, 0.60), look)
     w.box((0.11, 0.27), (-half + 0.08, half - 0.08), (0.72, 0.735), w.look("ceramic"), solid=False)

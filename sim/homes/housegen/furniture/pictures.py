@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
+from sim.homes.housegen.furniture.parts import around, centred, inset
 from sim.homes.housegen.furniture.parts.flat_pictures import Page, photograph
 from sim.homes.housegen.furniture.parts.palette_mesh import PaletteMesh
 from sim.homes.housegen.furniture.shapes import named_mesh
@@ -19,16 +19,15 @@ def frame(w: Workbench, width: float, height: float, border: float, thick: float
     y = 0.5 * width
     w.box((0.0, thick), (-y, y), (0.0, border), look)
     w.box((0.0, thick), (-y, y), (height - border, height), look)
-    for side in BOTH_SIDES:
-        c = side * (y - 0.5 * border)
+    for c in inset((-y, y), 0.5 * border):
         w.box((0.0, thick), around(c, 0.5 * border), (border, height - border), look)
 
 
-def distinct_looks(w: Workbench, material: str, count: int) -> list[Look]:
-    """Draws looks of a material that differ from each other as long as there are enough of them."""
-    looks = [w.new_look(material)]
+def _distinct_paints(w: Workbench, count: int) -> list[Look]:
+    """Draws looks of paint that differ from each other as long as there are enough of them."""
+    looks = [w.new_look("paint")]
     while len(looks) < count:
-        drawn = [w.new_look(material) for _ in range(8)]
+        drawn = [w.new_look("paint") for _ in range(8)]
         looks.append(next((look for look in drawn if look not in looks), drawn[0]))
     return looks
 
@@ -56,7 +55,7 @@ def canvas_landscape(w: Workbench) -> None:
     """Builds an unframed canvas with a sky, a sun and bands of hills."""
     width, height = w.width(0.60, 1.20), w.height(0.45, 0.80)
     w.mount_height_m = 1.52 - 0.5 * height
-    sky, sun, *hills = distinct_looks(w, "paint", 5)
+    sky, sun, *hills = _distinct_paints(w, 5)
     w.box((0.0, 0.032), centred(width), (0.0, height), sky)
     x = 0.034
     w.rod_x((0.22 * width, 0.70 * height), (0.03, x), 0.12 * height, sun, solid=False)
@@ -74,7 +73,7 @@ def triptych(w: Workbench) -> None:
     width, height = w.width(0.80, 1.40), w.height(0.45, 0.75)
     w.mount_height_m = 1.52 - 0.5 * height
     pitch, gap = (width - 0.08) / 3, 0.04
-    ground, *bands = distinct_looks(w, "paint", 3)
+    ground, *bands = _distinct_paints(w, 3)
     for i in range(3):
         y0 = -0.5 * width + i * (pitch + gap)
         w.box((0.0, 0.030), (y0, y0 + pitch), (0.0, height), ground)

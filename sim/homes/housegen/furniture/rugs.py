@@ -25,19 +25,18 @@ def runner(w: Workbench) -> None:
     width, depth = w.width(1.8, 2.8), w.depth(0.65, 0.85)
     w.box(centred(depth), centred(width), (0.0, 0.007), w.look("fabric"), solid=False)
     band = w.look("bright")
-    for side in (-1, 1):
-        c = side * (0.5 * depth - 0.10)
+    for c in centred(depth, 0.10):
         w.box(around(c, 0.03), centred(width, 0.08), (0.0, 0.010), band, solid=False)
 
 
-def shag(w: Workbench) -> None:
+def bordered_rug(w: Workbench) -> None:
     """Builds a thick plain rug with a border."""
     width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
     w.box(centred(depth), centred(width), (0.0, 0.008), w.new_look("fabric"), solid=False)
     w.box(centred(depth, 0.09), centred(width, 0.09), (0.0, 0.012), w.new_look("fabric"), solid=False)
 
 
-def oriental(w: Workbench) -> None:
+def fringed_rug(w: Workbench) -> None:
     """Builds a patterned rug with fringes at both ends."""
     width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
     w.box(centred(depth), centred(width, 0.06), (0.0, 0.009), w.look("rug"), solid=False)
@@ -50,6 +49,6 @@ STYLES = (
     Style("floor", "rug_rectangle", "train", rug, ("rug",), walk_over=True),
     Style("floor", "rug_round", "heldout", round_rug, ("rug",), walk_over=True),
     Style("floor", "rug_runner", "train", runner, ("rug",), walk_over=True),
-    Style("floor", "rug_bordered", "train", shag, ("rug",), walk_over=True),
-    Style("floor", "rug_fringed", "heldout", oriental, ("rug",), walk_over=True),
+    Style("floor", "rug_bordered", "train", bordered_rug, ("rug",), walk_over=True),
+    Style("floor", "rug_fringed", "heldout", fringed_rug, ("rug",), walk_over=True),
 )

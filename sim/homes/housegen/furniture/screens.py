@@ -28,8 +28,7 @@ def tv_stand(w: Workbench) -> None:
     """Builds a television on two feet, for a bench."""
     width = w.width(0.80, 1.40)
     _panel(w, 0.0, width, (0.07, 0.07 + 0.575 * width))
-    for side in BOTH_SIDES:
-        y = side * 0.34 * width
+    for y in (-0.34 * width, 0.34 * width):
         w.bar((-0.11, y, 0.008), (0.11, y, 0.008), 0.03, 0.016, w.look("dark"))
         w.box((-0.015, 0.005), around(y, 0.012), (0.01, 0.08), w.look("dark"))
 

@@ -10,7 +10,7 @@ import math
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset, polar
+from sim.homes.housegen.furniture.parts import around, centred, inset, polar
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, loft, puffed
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -23,8 +23,7 @@ def bench_wood(w: Workbench) -> None:
     w.mesh(chamfered_box((depth - 0.03, width - 0.06, 0.05), 0.015), (0.0, 0.0, seat + 0.02), w.look("fabric"))
     w.legs(inset(x, 0.02), inset(y, 0.05), (0.0, seat - 0.04), 0.05, wood)
     w.box((-0.02, 0.02), inset(y, 0.08), (0.16, 0.20), wood)
-    for side in BOTH_SIDES:
-        edge = side * (0.5 * width - 0.075)
+    for edge in centred(width, 0.075):
         w.box(inset(x, 0.04), around(edge, 0.015), (0.16, 0.20), wood)
     w.top(x, inset(y, 0.1), seat + 0.045, "seat")
 
@@ -101,8 +100,7 @@ def tufted_bench(w: Workbench) -> None:
             cloth,
         )
     w.box(centred(depth, 0.04), centred(width, 0.05), (seat - 0.15, seat - 0.11), w.look("dark"))
-    for side in BOTH_SIDES:
-        y = side * (0.5 * width - 0.16)
+    for y in centred(width, 0.16):
         w.bar((-0.17, y, 0.0), (0.17, y, seat - 0.14), 0.025, 0.015, metal)
         w.bar((0.17, y, 0.0), (-0.17, y, seat - 0.14), 0.025, 0.015, metal)
     w.rod_y((0.0, 0.5 * (seat - 0.14)), centred(width, 0.16), 0.010, metal)
@@ -122,8 +120,7 @@ def settle(w: Workbench) -> None:
     w.box((x[0], x[0] + 0.03), y, (seat - 0.04, high), wood)
     w.box((x[0] - 0.005, x[0] + 0.045), y, (high - 0.06, high), wood)
     w.box(x, y, (seat - 0.035, seat), wood)
-    for side in BOTH_SIDES:
-        c = side * (0.5 * width - 0.02)
+    for c in centred(width, 0.02):
         w.box((x[0], x[1]), around(c, 0.02), (0.0, seat), wood)
         w.box((x[1] - 0.05, x[1] - 0.01), around(c, 0.02), (seat, 0.64), wood)
         w.box((x[0], x[1] + 0.01), around(c, 0.03), (0.64, 0.67), wood)
@@ -143,8 +140,7 @@ def slab_bench(w: Workbench) -> None:
     """Builds a bench of stone or plank on two blocks."""
     width, depth, seat = w.width(0.95, 1.40), w.depth(0.36, 0.42), w.length(0.42, 0.46)
     w.box(centred(depth), centred(width), (seat - 0.07, seat), w.look("wood"))
-    for side in BOTH_SIDES:
-        y = side * (0.5 * width - 0.22)
+    for y in centred(width, 0.22):
         w.box(centred(depth, 0.03), around(y, 0.06), (0.0, seat - 0.07), w.look("stone"))
     w.top((-0.4 * depth, 0.4 * depth), (-0.4 * width, 0.4 * width), seat, "seat")
 

@@ -94,26 +94,31 @@ def loft(rings: Sequence[Ring], segments: int = 12, *, hull: bool = False, loop:
     `loop`, the last ring is joined to the first one instead: a body with a hole, such as the seat of a toilet.
     """
     angles = math.pi / 4 + np.arange(segments) * (math.tau / segments)  # a corner of a rounded square is a vertex
+    cos, sin = np.cos(angles), np.sin(angles)
     vertices = []
     for ring in rings:
-        cos, sin = np.cos(angles), np.sin(angles)
         stretch = (np.abs(cos) ** ring.power + np.abs(sin) ** ring.power) ** (-1.0 / ring.power)
         x, y = ring.x_m + ring.rx_m * stretch * cos, ring.y_m + ring.ry_m * stretch * sin
         vertices.append(np.column_stack([x, y, np.full(segments, ring.z_m)]))
-    if hull:
-        return named_mesh("loft", np.vstack(vertices))
+    return named_mesh("loft", np.vstack(vertices), () if hull else ring_faces(len(rings), segments, loop=loop))
+
+
+def ring_faces(rings: int, segments: int, *, loop: bool = False) -> list[tuple[int, int, int]]:
+    """Returns the triangles of a surface over rings of `segments` vertices each, closed at both ends.
+
+    With `loop`, the last ring is joined to the first one instead.
+    """
     faces: list[tuple[int, int, int]] = []
-    count = len(rings) * segments
-    for level in range(len(rings) if loop else len(rings) - 1):
+    count = rings * segments
+    for level in range(rings if loop else rings - 1):
         for i in range(segments):
             a, b = level * segments + i, level * segments + (i + 1) % segments
-            faces += [(a, b, (b + segments) % count), (a, (b + segments) % count, (a + segments) % count)]
-    if loop:
-        return named_mesh("loft", np.vstack(vertices), faces)
-    last = (len(rings) - 1) * segments
-    for i in range(1, segments - 1):
-        faces += [(0, i + 1, i), (last, last + i, last + i + 1)]
-    return named_mesh("loft", np.vstack(vertices), faces)
+            faces += _quad(a, b, (b + segments) % count, (a + segments) % count)
+    if not loop:
+        last = count - segments
+        for i in range(1, segments - 1):
+            faces += [(0, i + 1, i), (last, last + i, last + i + 1)]
+    return faces
 
 
 def turned(profile_m: Sequence[tuple[float, float]], segments: int = 12, *, hull: bool = False) -> MeshShape:
@@ -125,24 +130,10 @@ def hoop(radius_m: float, thick_m: float, height_m: float) -> MeshShape:
     """Returns a flat band about the z axis with outer radius `radius_m` and its middle at z = 0."""
     segments = 20
     angles = math.pi / 4 + np.arange(segments) * (math.tau / segments)
-    inner = radius_m - thick_m
-    vertices = np.vstack(
-        [
-            np.column_stack([r * np.cos(angles), r * np.sin(angles), np.full(segments, z)])
-            for r, z in (
-                (radius_m, -0.5 * height_m),
-                (radius_m, 0.5 * height_m),
-                (inner, 0.5 * height_m),
-                (inner, -0.5 * height_m),
-            )
-        ]
-    )
-    faces: list[tuple[int, int, int]] = []
-    for level in range(4):
-        for i in range(segments):
-            j, up = (i + 1) % segments, (level + 1) % 4
-            faces += _quad(level * segments + i, level * segments + j, up * segments + j, up * segments + i)
-    return named_mesh("hoop", vertices, faces)
+    inner_m, half_m = radius_m - thick_m, 0.5 * height_m
+    rings = ((radius_m, -half_m), (radius_m, half_m), (inner_m, half_m), (inner_m, -half_m))
+    vertices = [np.column_stack([r * np.cos(angles), r * np.sin(angles), np.full(segments, z)]) for r, z in rings]
+    return named_mesh("hoop", np.vstack(vertices), ring_faces(4, segments, loop=True))
 
 
 def arc_wall(

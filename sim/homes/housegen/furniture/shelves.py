@@ -8,7 +8,7 @@ from __future__ import annotations
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
+from sim.homes.housegen.furniture.parts import around, centred, inset
 from sim.homes.housegen.furniture.shapes import chamfered_box, turned
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
@@ -38,8 +38,7 @@ def bookcase(w: Workbench) -> None:
     width, depth, height = w.width(0.70, 1.00), w.depth(0.28, 0.34), w.height(1.80, 2.05)
     look = parts.wood_look(w)
     x, y = parts.footprint(depth, width)
-    for side in BOTH_SIDES:
-        edge = side * (0.5 * width - 0.011)
+    for edge in centred(width, 0.011):
         w.box(x, around(edge, 0.011), (0.0, height), look)
     w.box((x[0], x[0] + 0.008), inset(y, 0.022), (0.04, height), look)
     count = 5
@@ -56,8 +55,7 @@ def ladder_shelf(w: Workbench) -> None:
     width, height, depth = w.width(0.55, 0.75), w.height(1.70, 1.90), w.depth(0.40, 0.48)
     wood = w.look("wood")
     x0, x1, y = -0.5 * depth, 0.5 * depth, centred(width)
-    for side in BOTH_SIDES:
-        edge = side * (0.5 * width - 0.015)
+    for edge in centred(width, 0.015):
         w.bar((x1 - 0.02, edge, 0.0), (x0 + 0.02, edge, height), 0.03, 0.03, wood)
     for i in range(4):
         z = 0.25 + i * (height - 0.45) / 3
@@ -77,8 +75,7 @@ def wall_boards(w: Workbench) -> None:
     for i in range(count):
         z = 0.14 + 0.36 * i
         w.box((0.0, depth), y, (z, z + 0.025), look)
-        for side in BOTH_SIDES:
-            edge = side * 0.36 * width
+        for edge in (-0.36 * width, 0.36 * width):
             w.bar((0.006, edge, z - 0.12), (depth - 0.05, edge, z), 0.012, 0.012, metal, solid=False)
         _books(w, (0.0, depth), inset(y, 0.06, 0.20), z + 0.025, 0.30)
         w.ellipsoid((0.5 * depth, y[1] - 0.10, z + 0.095), (0.06, 0.06, 0.07), w.new_look("ceramic"), solid=False)
@@ -115,7 +112,7 @@ def etagere(w: Workbench) -> None:
             w.cylinder((0.0, -0.14), (z + 0.012, z + 0.17), 0.045, w.look("ceramic"), solid=False)
 
 
-def corner_niche(w: Workbench) -> None:
+def niches(w: Workbench) -> None:
     """Builds open boxes of different sizes on the wall, with books and vases in them."""
     width, depth, look = w.width(0.80, 1.20), w.depth(0.20, 0.25), parts.wood_look(w)
     w.mount_height_m = 1.10
@@ -172,6 +169,6 @@ STYLES = (
     Style("shelving", "wall_boards", "train", wall_boards, ("wall",), "wall"),
     Style("shelving", "pipe_shelf", "heldout", pipe_shelf, ("bookcase",)),
     Style("shelving", "etagere", "heldout", etagere, ("bookcase",)),
-    Style("shelving", "niches", "heldout", corner_niche, ("wall",), "wall"),
+    Style("shelving", "niches", "heldout", niches, ("wall",), "wall"),
     Style("shelving", "cubes", "train", cubes, ("bookcase",)),
 )

@@ -84,7 +84,7 @@ def range_hood(w: Workbench) -> None:
         w.rod_x((0.10 + 0.05 * i, 0.03), (0.495, 0.505), 0.010, w.look("dark"), solid=False)
 
 
-def flat_hood(w: Workbench) -> None:
+def slanted_hood(w: Workbench) -> None:
     """Builds a slanted glass hood."""
     width = w.width(0.58, 0.80)
     w.mount_height_m = 1.45
@@ -120,7 +120,7 @@ STYLES = (
     Style("appliances", "microwave", "train", microwave, ("microwave",), "top"),
     Style("appliances", "toaster_oven", "heldout", toaster_oven, ("microwave",), "top"),
     Style("appliances", "hood_chimney", "train", range_hood, ("hood",), "wall"),
-    Style("appliances", "hood_slanted", "heldout", flat_hood, ("hood",), "wall"),
+    Style("appliances", "hood_slanted", "heldout", slanted_hood, ("hood",), "wall"),
     Style("appliances", "coffee_machine", "train", coffee_machine, ("small",), "top"),
     Style("appliances", "toaster", "heldout", toaster, ("small",), "top"),
 )

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, centred, inset
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, loft, named_mesh
 from sim.homes.housegen.furniture.workbench import Workbench
 
@@ -67,9 +67,14 @@ def _back_cushions(w: Workbench, s: _Sofa, look: Look, thick: float = 0.14) -> N
 
 
 def _loose_cushions(w: Workbench, s: _Sofa, front_of_back: float) -> None:
-    """Adds throw cushions against the back."""
-    face = -0.5 * s.depth + front_of_back
-    parts.throw_cushions(w, face, s.inner, s.seat, (0, 1, 2, 2, 3), margin=0.24, middle=0.08)
+    """Adds up to three throw cushions against the back, the outer ones first; hint `cushions` sets their number."""
+    hinted = w.hints.get("cushions")
+    count = int(hinted) if hinted is not None else w.choice((0, 1, 2, 2, 3))
+    places = (0.5 * s.inner - 0.24, -0.5 * s.inner + 0.24, 0.08)
+    for y in places[: min(count, 3 if s.inner > 1.5 else 2)]:
+        cushion = w.make("cushion", use="throw")
+        x = -0.5 * s.depth + front_of_back + 0.5 * cushion.size_m[0] - 0.02
+        w.put(cushion, (x, y, s.seat - 0.015), w.length(-0.15, 0.15))
 
 
 def block_arm(w: Workbench) -> None:
@@ -121,8 +126,7 @@ def wooden_frame(w: Workbench) -> None:
     """Builds a slim Scandinavian sofa with open wooden arms and legs and loose cushions."""
     s, cloth, wood = _measure(w, (0.06, 0.08), (0.76, 0.84)), w.look("fabric"), w.look("wood")
     half = 0.5 * s.width - 0.025
-    for side in BOTH_SIDES:
-        y = side * half
+    for y in (-half, half):
         w.bar((0.5 * s.depth - 0.06, y, 0.0), (0.5 * s.depth - 0.10, y, 0.58), 0.04, 0.04, wood)
         w.bar((-0.5 * s.depth + 0.08, y, 0.0), (-0.5 * s.depth + 0.14, y, 0.58), 0.04, 0.04, wood)
         w.box(centred(s.depth, 0.06, 0.04), around(y, 0.025), (0.57, 0.60), wood)
@@ -223,8 +227,7 @@ def daybed(w: Workbench) -> None:
     w.box((x0 + 0.02, x1 - 0.02), (-half + 0.02, half - 0.02), (seat - 0.22, seat - 0.16), metal)
     w.mesh(chamfered_box((depth - 0.05, width - 0.06, 0.17), 0.04), (0.0, 0.0, seat - 0.085), cloth)
     top = w.length(0.74, 0.86)
-    for side in BOTH_SIDES:
-        y = side * (half - 0.015)
+    for y in inset((-half, half), 0.015):
         for x in (x0 + 0.015, x1 - 0.015):
             w.cylinder((x, y), (0.0, top), 0.015, metal)
         w.rod_x((y, top - 0.01), (x0 + 0.015, x1 - 0.015), 0.012, metal)
@@ -253,8 +256,7 @@ def camelback(w: Workbench) -> None:
     back = [(x, y, z) for x in (0.0, 0.12) for y, z in (*crest, (-half, s.seat - 0.2), (half, s.seat - 0.2))]
     w.mesh(named_mesh("crest", back), (x0, 0.0, 0.0), cloth)
     w.bent_rod([(x0 + 0.06, y, z) for y, z in crest], 0.025, wood)
-    for side in BOTH_SIDES:
-        y = side * (half - 0.5 * s.arm)
+    for y in inset((-half, half), 0.5 * s.arm):
         w.box((x0 + 0.06, 0.5 * s.depth - 0.05), around(y, 0.05), (s.seat - 0.22, 0.60), cloth)
         w.rod((x0 + 0.08, y, 0.61), (0.5 * s.depth - 0.06, y, 0.60), 0.075, cloth, round_ends=True)
     _seat_cushions(w, s, cloth, 0.14)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, polar
+from sim.homes.housegen.furniture.parts import BOTH_SIDES, around, inset, polar
 from sim.homes.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, puffed, strip, turned
 from sim.homes.housegen.furniture.workbench import CORNERS, Workbench
 
@@ -68,8 +68,7 @@ def saddle(w: Workbench) -> None:
         (0.0, 0.0, seat - 0.03),
         w.look("wood"),
     )
-    for side in BOTH_SIDES:
-        y = side * (half - 0.02)
+    for y in inset((-half, half), 0.02):
         for x0, x1 in ((-0.19, -0.10), (0.19, 0.10)):
             w.rod((x0, y, 0.009), (x1, y * 0.8, seat - 0.05), 0.009, iron, round_ends=True)
         w.rod_x((y, 0.009), (-0.19, 0.19), 0.009, iron)
@@ -98,8 +97,7 @@ def step_stool(w: Workbench) -> None:
         0.5 * w.length(0.36, 0.42),
         w.look("lacquer") if w.chance(0.5) else w.look("wood"),
     )
-    for side in BOTH_SIDES:
-        y = side * (half - 0.012)
+    for y in inset((-half, half), 0.012):
         w.box((-0.20, 0.0), around(y, 0.012), (0.0, high - 0.025), look)
         w.box((0.0, 0.20), around(y, 0.012), (0.0, 0.5 * high - 0.025), look)
     w.box((-0.21, 0.01), (-half, half), (high - 0.025, high), look)
@@ -147,8 +145,7 @@ def folding_stool(w: Workbench) -> None:
     """Builds a camp stool with crossed legs under a sling of cloth."""
     w.mass_kg = 3.0
     seat, half, wood = w.length(0.42, 0.46), 0.5 * w.length(0.36, 0.42), w.look("wood")
-    for side in BOTH_SIDES:
-        y = side * (half - 0.015)
+    for y in inset((-half, half), 0.015):
         w.bar((-0.20, y, 0.0), (0.20, y, seat), 0.022, 0.03, wood)
         w.bar((0.20, y * 0.88, 0.0), (-0.20, y * 0.88, seat), 0.022, 0.03, wood)
     for x in (-0.20, 0.20):

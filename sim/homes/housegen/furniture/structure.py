@@ -15,8 +15,7 @@ def baluster_railing(w: Workbench) -> None:
     width, high, wood, white = w.width(1.0, 2.4), w.length(0.90, 1.05), w.look("wood"), w.look("lacquer")
     w.box((-0.03, 0.03), centred(width), (high - 0.05, high), wood)
     w.box((-0.02, 0.02), centred(width), (0.06, 0.10), white)
-    for side in BOTH_SIDES:
-        c = side * (0.5 * width - 0.04)
+    for c in centred(width, 0.04):
         w.box((-0.045, 0.045), around(c, 0.045), (0.0, high + 0.06), wood)
     count = max(3, round(width / 0.14))
     for i in range(1, count):
@@ -28,8 +27,7 @@ def glass_railing(w: Workbench) -> None:
     width, high, metal = w.width(1.0, 2.4), w.length(0.95, 1.10), w.look("chrome")
     w.rod_y((0.0, high - 0.022), centred(width), 0.022, metal)
     w.box((-0.006, 0.006), centred(width, 0.03), (0.05, high - 0.03), w.look("glass"))
-    for side in BOTH_SIDES:
-        c = side * (0.5 * width - 0.02)
+    for c in centred(width, 0.02):
         w.box((-0.02, 0.02), around(c, 0.02), (0.0, high - 0.02), metal)
     w.box((-0.03, 0.03), centred(width), (0.0, 0.06), metal)
 

@@ -61,8 +61,7 @@ def industrial(w: Workbench) -> None:
     width, depth, height = w.width(1.40, 2.20), w.depth(0.80, 0.95), w.length(0.74, 0.76)
     steel = w.look("iron")
     parts.slab(w, depth, width, (height - 0.045, height), w.look("wood"))
-    for side in BOTH_SIDES:
-        y = side * (0.5 * width - 0.22)
+    for y in centred(width, 0.22):
         for x in centred(depth, 0.06):
             w.box(around(x, 0.03), around(y, 0.03), (0.0, height - 0.045), steel)
         w.box(centred(depth, 0.09), around(y, 0.03), (0.0, 0.04), steel)
@@ -74,8 +73,7 @@ def trestle(w: Workbench) -> None:
     width, depth, height = w.width(1.50, 2.20), w.depth(0.85, 1.00), w.length(0.74, 0.77)
     wood = w.look("wood")
     parts.slab(w, depth, width, (height - 0.05, height), wood)
-    for side in BOTH_SIDES:
-        y = side * 0.32 * width
+    for y in (-0.32 * width, 0.32 * width):
         w.box((-0.22, 0.22), around(y, 0.03), (0.06, height - 0.10), wood)
         w.box((-0.36, 0.36), around(y, 0.045), (0.0, 0.07), wood)
         w.box((-0.34, 0.34), around(y, 0.045), (height - 0.11, height - 0.05), wood)
@@ -101,7 +99,7 @@ def glass_dining(w: Workbench) -> None:
         w.box((x[0], x[1]), around(y, 0.03), (height - 0.04, height - 0.015), metal)
 
 
-def tulip_legs_round(w: Workbench) -> None:
+def round_legs(w: Workbench) -> None:
     """Builds a round table with four straight round legs and a cross under the top."""
     radius, height, wood = 0.5 * w.width(0.95, 1.20), w.length(0.73, 0.76), w.look("wood")
     parts.round_top(w, radius, (height - 0.03, height), wood)
@@ -132,8 +130,7 @@ def desk_frame(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 1.80), w.depth(0.65, 0.80), w.length(0.70, 0.76)
     steel = w.look("metal")
     parts.slab(w, depth, width, (height - 0.025, height), w.look("lacquer") if w.chance(0.5) else w.look("wood"))
-    for side in BOTH_SIDES:
-        y = side * (0.5 * width - 0.16)
+    for y in centred(width, 0.16):
         w.box((-0.03, 0.03), around(y, 0.04), (0.03, height - 0.06), steel)
         w.box((-0.45 * depth, 0.45 * depth), around(y, 0.035), (0.0, 0.035), steel)
         w.box((-0.40 * depth, 0.40 * depth), around(y, 0.02), (height - 0.06, height - 0.025), steel)
@@ -183,7 +180,7 @@ STYLES = (
     Style("table", "industrial", "train", industrial, ("dining",)),
     Style("table", "trestle", "heldout", trestle, ("dining",)),
     Style("table", "glass_dining", "heldout", glass_dining, ("dining",)),
-    Style("table", "round_legs", "heldout", tulip_legs_round, ("dining",)),
+    Style("table", "round_legs", "heldout", round_legs, ("dining",)),
     Style("table", "desk_pedestal", "train", desk_pedestal, ("desk",)),
     Style("table", "desk_frame", "train", desk_frame, ("desk",)),
     Style("table", "wing_desk", "heldout", wing_desk, ("desk",)),

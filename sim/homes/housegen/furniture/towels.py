@@ -30,8 +30,7 @@ def towel_radiator(w: Workbench) -> None:
     width, high = w.width(0.45, 0.60), w.length(1.00, 1.40)
     w.mount_height_m = 0.45
     white = w.look("ceramic") if w.chance(0.5) else w.look("chrome")
-    for side in BOTH_SIDES:
-        y = side * (0.5 * width - 0.015)
+    for y in centred(width, 0.015):
         w.box((0.05, 0.08), around(y, 0.015), (0.0, high), white)
         for z in (0.08, high - 0.08):
             w.rod_x((y, z), (0.0, 0.06), 0.012, white, solid=False)
@@ -137,8 +136,7 @@ def swing_rail(w: Workbench) -> None:
 def towel_stand(w: Workbench) -> None:
     """Builds a free-standing rack of two bars with towels."""
     half, high, metal = 0.5 * w.width(0.50, 0.65), w.length(0.85, 1.0), w.look("iron")
-    for side in BOTH_SIDES:
-        y = side * half
+    for y in (-half, half):
         w.cylinder((0.0, y), (0.0, high), 0.011, metal)
         w.rod_x((y, 0.011), (-0.13, 0.13), 0.011, metal)
         w.rod((-0.10, y, high - 0.18), (0.10, y, high - 0.06), 0.008, metal)

@@ -54,8 +54,8 @@ def bounds(geoms: Sequence[Geom], children: Sequence[Child] = ()) -> tuple[NDArr
         lows.append(low)
         highs.append(high)
     for child in children:
-        rotated = [_rotated(g, child.yaw_rad) for g in child.item.geoms]
-        low, high = bounds(rotated, [_rotated_child(c, child.yaw_rad) for c in child.item.children])
+        geoms = [rotated(g, child.yaw_rad) for g in child.item.geoms]
+        low, high = bounds(geoms, [_rotated_child(c, child.yaw_rad) for c in child.item.children])
         lows.append(low + child.pos_m)
         highs.append(high + child.pos_m)
     return np.min(lows, axis=0), np.max(highs, axis=0)
@@ -87,7 +87,8 @@ def _half_extent(geom: Geom, rotation: NDArray) -> NDArray[np.float64]:
     return size[1] * axis + size[0] * np.sqrt(np.maximum(0.0, 1.0 - axis**2))
 
 
-def _rotated(geom: Geom, yaw_rad: float) -> Geom:
+def rotated(geom: Geom, yaw_rad: float) -> Geom:
+    """Returns a geom turned about the vertical axis of its frame."""
     turn = matrix_from_euler(0.0, 0.0, yaw_rad)
     euler = euler_from_matrix(turn @ matrix_from_euler(*geom.euler_rad))
     return dataclasses.replace(geom, pos_m=tuple(turn @ geom.pos_m), euler_rad=euler)

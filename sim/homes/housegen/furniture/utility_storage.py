@@ -115,7 +115,7 @@ def hamper_tower(w: Workbench) -> None:
     """Builds a tall case: two tilted laundry bins below, two boards with detergents above."""
     width, depth, height = w.width(0.60, 0.80), w.depth(0.36, 0.42), w.height(1.60, 1.85)
     look, x, y = parts.wood_look(w), *parts.footprint(depth, width)
-    parts.open_case(w, x, y, (0.0, height), 0.02, look)
+    parts.open_case(w, x, y, (0.0, height), look)
     for z, room in ((0.74, 0.36), (1.14, height - 1.2)):
         w.box((x[0] + 0.012, x[1]), inset(y, 0.02), (z, z + 0.02), look)
         _stock(w, inset(y, 0.04), z + 0.02, room, linen=False)
@@ -123,7 +123,7 @@ def hamper_tower(w: Workbench) -> None:
         span = parts.on_side(side, 0.01, 0.5 * width - 0.025)
         w.box((x[1] - 0.03, x[1] - 0.01), span, (0.05, 0.70), w.look("wicker"), tilt=0.05)
         w.box(
-            (x[1] + 0.0, x[1] + 0.015), around(sum(span) / 2, 0.06), (0.58, 0.62), w.look("dark"),
+            (x[1], x[1] + 0.015), around(sum(span) / 2, 0.06), (0.58, 0.62), w.look("dark"),
             solid=False,
         )  # fmt: skip
 
@@ -132,7 +132,7 @@ def walk_in_case(w: Workbench) -> None:
     """Builds an open wardrobe case: drawers below, boards with folded clothes and boxes above."""
     width, depth, height = w.width(0.75, 1.00), w.depth(0.40, 0.46), w.height(1.75, 2.00)
     look, x, y = parts.wood_look(w), *parts.footprint(depth, width)
-    parts.open_case(w, x, y, (0.0, height), 0.02, look)
+    parts.open_case(w, x, y, (0.0, height), look)
     w.box(inset(x, 0.012, parts.FRONT_M), inset(y, 0.02), (0.02, 0.62), look)
     parts.plain_drawers(w, x[1] - parts.FRONT_M, inset(y, 0.02), (0.03, 0.61), 3, 1, look, w.look("metal"), "bar")
     step = (height - 0.64) / 3
@@ -147,8 +147,7 @@ def slatted_shelf(w: Workbench, *, linen: bool) -> None:
     """Builds slatted boards between wooden frames with a cross behind, with the goods of a closet or of a laundry."""
     width, depth, height = w.width(0.70, 0.95), w.depth(0.38, 0.44), w.height(1.50, 1.80)
     wood, iron, x, y = w.look("wood"), w.look("iron"), *parts.footprint(depth, width)
-    for side in BOTH_SIDES:
-        edge = side * (0.5 * width - 0.02)
+    for edge in centred(width, 0.02):
         for front in inset(x, 0.02):
             w.box(around(front, 0.02), around(edge, 0.02), (0.0, height), wood)
     step = (height - 0.10) / 3
@@ -172,8 +171,7 @@ def drying_cupboard(w: Workbench) -> None:
     w.box(inset(x, 0.03, 0.06), inset(y, 0.02), (0.0, 0.06), w.look("dark"))
     parts.plain_doors(w, x[1] - parts.FRONT_M, y, (0.07, 0.85), 2, look, w.look("metal"), "knob")
     _stock(w, inset(y, 0.05), 0.86, 0.3, linen=False)
-    for side in BOTH_SIDES:
-        edge = side * (0.5 * width - 0.015)
+    for edge in centred(width, 0.015):
         w.box((x[0], x[0] + 0.03), around(edge, 0.015), (0.86, height), look)
     w.box((x[0], x[0] + 0.30), y, (height, height + 0.025), look)
     w.rod_y((x[0] + 0.015, height - 0.12), inset(y, 0.02), 0.01, metal)
@@ -215,8 +213,7 @@ def winged_airer(w: Workbench) -> None:
     """Builds a folding drying rack: crossed legs, five rods and laundry over some of them."""
     width, high = w.length(0.90, 1.05), w.length(0.90, 1.00)
     metal = w.look("metal")
-    for side in BOTH_SIDES:
-        y = side * 0.5 * width
+    for y in centred(width):
         for sign in BOTH_SIDES:
             w.bar((sign * 0.26, y, 0.0), (-sign * 0.24, y, high), 0.022, 0.022, metal)
         w.bar((-0.26, y, high), (0.26, y, high), 0.022, 0.022, metal)
@@ -231,8 +228,7 @@ def ladder_airer(w: Workbench) -> None:
     """Builds a tower for drying: two upright frames with three tiers of rods."""
     width, high = w.length(0.62, 0.72), w.length(1.45, 1.60)
     metal, plastic = w.look("metal"), w.look("plastic")
-    for side in BOTH_SIDES:
-        y = side * 0.5 * width
+    for y in centred(width):
         for x in (-0.22, 0.22):
             w.bar((x, y, 0.0), (x, y, high), 0.024, 0.024, metal)
         w.bar((-0.22, y, high), (0.22, y, high), 0.024, 0.024, plastic)
@@ -262,8 +258,7 @@ def clothes_horse(w: Workbench) -> None:
 def airer_frame(w: Workbench) -> None:
     """Builds a gate-shaped drying rack: a rail high up with hanging sheets, a tray of slats below."""
     width, high, iron = w.length(0.90, 1.10), w.length(1.35, 1.50), w.look("iron")
-    for side in BOTH_SIDES:
-        y = side * 0.5 * width
+    for y in centred(width):
         w.bar((0.0, y, 0.02), (0.0, y, high), 0.028, 0.028, iron)
         w.bar((-0.24, y, 0.014), (0.24, y, 0.014), 0.028, 0.028, iron)
         w.bar((-0.20, y, high - 0.05), (0.20, y, high - 0.05), 0.020, 0.020, iron)

@@ -152,16 +152,11 @@ def _wet_spot(rng: np.random.Generator, fixture: Fixture) -> list[Piece]:
     x0, y0, x1, y1 = room.bounds_m
     x = fixture.x_m + ahead_m * math.cos(fixture.yaw_rad)
     y = fixture.y_m + ahead_m * math.sin(fixture.yaw_rad)
-    low_x, high_x, low_y, high_y = (
-        max(x - half[0], x0),
-        min(x + half[0], x1),
-        max(y - half[1], y0),
-        min(y + half[1], y1),
-    )
-    if min(high_x - low_x, high_y - low_y) < 0.5 * WET_M[0]:
+    x0, x1 = max(x - half[0], x0), min(x + half[0], x1)
+    y0, y1 = max(y - half[1], y0), min(y + half[1], y1)
+    if min(x1 - x0, y1 - y0) < 0.5 * WET_M[0]:
         return []
-    size = (0.5 * (high_x - low_x), 0.5 * (high_y - low_y), 0.5 * FILM_M)
-    middle = (0.5 * (low_x + high_x), 0.5 * (low_y + high_y), 0.5 * FILM_M)
+    size, middle = (0.5 * (x1 - x0), 0.5 * (y1 - y0), 0.5 * FILM_M), (0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * FILM_M)
     return [Piece(room.body, _point(*middle), _rounded(size), friction, material="water")]
 
 

@@ -18,7 +18,7 @@ def jammed_leaf(s: Sketch) -> bool:
     if opening is None:
         return False
     width = s.move_into(opening) - 0.02
-    at, yaw_rad = s.draw_hinge(width, 2.0 * math.asin(float(s.rng.uniform(*GAP_M)) / (2.0 * width)))
+    at, yaw_rad = s.draw_hinge(width, 2.0 * math.asin(s.uniform(*GAP_M) / (2.0 * width)))
     wood, metal = s.look("wood"), s.looks["frame"]
     leaf = [box((0.0, width), (-HALF_M, HALF_M), (FLOOR_GAP_M, HIGH_M), wood)]
     for side in (-1, 1):

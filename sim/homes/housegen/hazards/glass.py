@@ -28,16 +28,16 @@ def sliding_door(s: Sketch) -> bool:
     if opening is None:
         return False
     low, high = opening.clear_span()
-    s.move_into(opening, float(s.rng.uniform(low + 0.3, high - 0.3)))
+    s.move_into(opening, s.uniform(low + 0.3, high - 0.3))
     return _across(s, "door")
 
 
 def screen(s: Sketch) -> bool:
     """Adds a free-standing screen across the path, often with wings at its ends towards the robot's approach."""
     s.align()
-    half = 0.5 * float(s.rng.uniform(1.2, 2.2))
-    shift = float(s.rng.uniform(-0.5, 0.5)) * half
-    wings = [float(s.rng.uniform(0.5, 1.1)) if s.rng.random() < 0.7 else 0.0 for _ in range(2)]
+    half = 0.5 * s.uniform(1.2, 2.2)
+    shift = s.uniform(-0.5, 0.5) * half
+    wings = [s.uniform(0.5, 1.1) if s.rng.random() < 0.7 else 0.0 for _ in range(2)]
     _pane(s, "window", (0.0, shift - half), (0.0, shift + half))
     for side, wing in zip((-1, 1), wings, strict=True):
         if wing:
@@ -55,7 +55,7 @@ def door_leaf(s: Sketch) -> bool:
     if s.rng.random() < 0.3:
         _leaf(s, width, (0.0, -0.5 * width), math.pi / 2)
     else:
-        _leaf(s, width, *s.draw_hinge(width, float(s.rng.uniform(*LEAF_RAD))))
+        _leaf(s, width, *s.draw_hinge(width, s.uniform(*LEAF_RAD)))
     return True
 
 
@@ -65,12 +65,12 @@ DESIGNS = (partition, partition, sliding_door, sliding_door, screen, door_leaf)
 def _across(s: Sketch, category: str) -> bool:
     """Adds a pane across the free width at the sketch, often with a wing at its free end."""
     free_m = {side: s.floor.free_length_m(s.x_m, s.y_m, s.yaw_rad + side * math.pi / 2) for side in (1, -1)}
-    way_m = float(s.rng.uniform(*WAY_M))
+    way_m = s.uniform(*WAY_M)
     near = 1 if free_m[1] <= free_m[-1] else -1
     end_m = free_m[-near] - way_m
     if end_m < 0.25 or free_m[near] + end_m > 4.0:
         return False
-    wing_m = float(s.rng.uniform(0.5, 1.2)) if s.rng.random() < 0.5 else 0.0
+    wing_m = s.uniform(0.5, 1.2) if s.rng.random() < 0.5 else 0.0
     _pane(s, category, (0.0, near * (free_m[near] - 0.03)), (0.0, -near * end_m))
     if wing_m:
         y = -near * (end_m - 0.5 * PROFILE_M)

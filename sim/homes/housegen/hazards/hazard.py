@@ -137,6 +137,10 @@ class Sketch:
         movable = as_movable(item, mass_kg, friction)
         self._parts.append(Part(self._place(item, at, yaw_rad), movable=movable))
 
+    def uniform(self, low: float, high: float) -> float:
+        """Returns a random number between two others."""
+        return float(self.rng.uniform(low, high))
+
     def look(self, material: str) -> Look:
         """Draws a look of a material from the pool of the house."""
         return look(material, self.rng, self.pool)

@@ -13,18 +13,18 @@ POLE_M = 0.012
 def stands(s: Sketch) -> bool:
     """Adds a row of coat or music stands across the path; the gaps between their poles are closed by flat feet."""
     count = int(s.rng.integers(2, 4))
-    reach = float(s.rng.uniform(0.30, 0.36))
-    gap = 2.0 * reach + float(s.rng.uniform(0.02, 0.12))
-    metal, turn = s.look("metal"), float(s.rng.uniform(0.0, 0.3))
+    reach = s.uniform(0.30, 0.36)
+    gap = 2.0 * reach + s.uniform(0.02, 0.12)
+    metal, turn = s.look("metal"), s.uniform(0.0, 0.3)
     for i in range(count):
         y = (i - 0.5 * (count - 1)) * gap
-        s.add("furniture", _stand(metal, reach, float(s.rng.uniform(1.35, 1.7))), at=(0.0, y), yaw_rad=turn)
+        s.add("furniture", _stand(metal, reach, s.uniform(1.35, 1.7)), at=(0.0, y), yaw_rad=turn)
     return True
 
 
 def floor_lamp(s: Sketch) -> bool:
     """Adds a floor lamp on a flat round foot in the middle of the path."""
-    metal, radius = s.look("metal"), float(s.rng.uniform(0.24, 0.32))
+    metal, radius = s.look("metal"), s.uniform(0.24, 0.32)
     foot = Geom("cylinder", (radius, 0.02), (0.0, 0.0, 0.02), metal)
     shade = Geom("cylinder", (0.16, 0.11), (0.0, 0.0, 1.55), s.look("shade"), solid=False)
     s.add("lighting", [foot, post(0.0, 0.0, (0.04, 1.5), POLE_M, metal), shade])
@@ -34,21 +34,21 @@ def floor_lamp(s: Sketch) -> bool:
 def easels(s: Sketch) -> bool:
     """Adds one or two easels with three thin splayed legs across the path."""
     count = int(s.rng.integers(1, 3))
-    wood, spread = s.look("wood"), float(s.rng.uniform(0.34, 0.42))
+    wood, spread = s.look("wood"), s.uniform(0.34, 0.42)
     for i in range(count):
         y = (i - 0.5 * (count - 1)) * (2.0 * spread + 0.1)
         feet = [(spread * math.cos(a), spread * math.sin(a)) for a in (0.2, 0.2 + math.tau / 3, 0.2 + 2 * math.tau / 3)]
         legs = [rod((x, y_, 0.0), (0.12 * x, 0.12 * y_, 1.45), 0.011, wood) for x, y_ in feet]
         board = box((-0.05, -0.03), (-0.28, 0.28), (0.95, 1.4), s.look("paper"), solid=False)
-        s.add("objects", [*legs, board], at=(0.0, y), yaw_rad=float(s.rng.uniform(0.0, math.tau)))
+        s.add("objects", [*legs, board], at=(0.0, y), yaw_rad=s.uniform(0.0, math.tau))
     return True
 
 
 def trestles(s: Sketch) -> bool:
     """Adds a pair of trestles with spreaders close to the floor."""
     s.align()
-    wood, half = s.look("wood"), 0.5 * float(s.rng.uniform(0.7, 0.9))
-    gap = float(s.rng.uniform(0.7, 0.85))
+    wood, half = s.look("wood"), 0.5 * s.uniform(0.7, 0.9)
+    gap = s.uniform(0.7, 0.85)
     for side in (-1, 1):
         y, geoms = side * gap / 2, []
         for x in (-half, half):

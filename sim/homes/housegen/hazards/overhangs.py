@@ -8,12 +8,12 @@ from sim.homes.housegen.hazards.hazard import UNSEEN, Sketch, box, post
 
 def console(s: Sketch) -> bool:
     """Adds a high narrow table; the lower edge of its top is below the top of the robot."""
-    return _table(s, (1.2, 1.7), (0.35, 0.5), float(s.rng.uniform(0.79, 0.84)))
+    return _table(s, (1.2, 1.7), (0.35, 0.5), s.uniform(0.79, 0.84))
 
 
 def low_table(s: Sketch) -> bool:
     """Adds a low table."""
-    return _table(s, (1.1, 1.5), (0.5, 0.7), float(s.rng.uniform(0.36, 0.46)))
+    return _table(s, (1.1, 1.5), (0.5, 0.7), s.uniform(0.36, 0.46))
 
 
 DESIGNS = (console, low_table)
@@ -22,8 +22,8 @@ DESIGNS = (console, low_table)
 def _table(s: Sketch, lengths: tuple[float, float], depths: tuple[float, float], top: float) -> bool:
     """Adds a table that stands across the path; the lower side of its top is at `top`."""
     s.align()
-    y, x = 0.5 * float(s.rng.uniform(*lengths)), 0.5 * float(s.rng.uniform(*depths))
-    shift = float(s.rng.uniform(-0.3, 0.3)) * y
+    y, x = 0.5 * s.uniform(*lengths), 0.5 * s.uniform(*depths)
+    shift = s.uniform(-0.3, 0.3) * y
     metal = s.looks["frame"]
     legs: list[Geom] = []
     for side in (-1, 1):

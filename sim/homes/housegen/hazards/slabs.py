@@ -13,8 +13,8 @@ THRESHOLD_M = (0.005, 0.011)
 def plinth(s: Sketch) -> bool:
     """Adds one long low plinth across the path."""
     s.align()
-    half, shift = 0.5 * float(s.rng.uniform(0.7, 1.6)), float(s.rng.uniform(-0.25, 0.25))
-    depth, high = float(s.rng.uniform(0.15, 0.4)), float(s.rng.uniform(*HIGH_M))
+    half, shift = 0.5 * s.uniform(0.7, 1.6), s.uniform(-0.25, 0.25)
+    depth, high = s.uniform(0.15, 0.4), s.uniform(*HIGH_M)
     s.add("objects", [box((-depth / 2, depth / 2), (shift - half, shift + half), (0.0, high), s.look("wood"))])
     return True
 
@@ -22,8 +22,8 @@ def plinth(s: Sketch) -> bool:
 def podium(s: Sketch) -> bool:
     """Adds a low podium with a lip all around, as under a reading chair."""
     s.align()
-    x, y = 0.5 * float(s.rng.uniform(0.6, 1.1)), 0.5 * float(s.rng.uniform(0.8, 1.5))
-    high, wood = float(s.rng.uniform(0.05, 0.08)), s.look("wood")
+    x, y = 0.5 * s.uniform(0.6, 1.1), 0.5 * s.uniform(0.8, 1.5)
+    high, wood = s.uniform(0.05, 0.08), s.look("wood")
     base = box((-x + 0.03, x - 0.03), (-y + 0.03, y - 0.03), (0.0, high - 0.02), s.look("lacquer"))
     s.add("furniture", [base, box((-x, x), (-y, y), (high - 0.02, high), wood)])
     return True
@@ -31,13 +31,13 @@ def podium(s: Sketch) -> bool:
 
 def planks(s: Sketch) -> bool:
     """Adds two or three boards in the shape of an L or a U, open towards the robot's approach."""
-    high, wide = float(s.rng.uniform(*HIGH_M)), float(s.rng.uniform(0.10, 0.16))
-    half = 0.5 * float(s.rng.uniform(1.0, 1.7))
+    high, wide = s.uniform(*HIGH_M), s.uniform(0.10, 0.16)
+    half = 0.5 * s.uniform(1.0, 1.7)
     wood = s.look("wood")
     s.add("objects", [box((0.0, wide), (-half, half), (0.0, high), wood)])
     for side in (-1, 1):
         if s.rng.random() < 0.75:
-            length, y = float(s.rng.uniform(0.5, 1.1)), sorted((side * half, side * (half - wide)))
+            length, y = s.uniform(0.5, 1.1), sorted((side * half, side * (half - wide)))
             s.add("objects", [box((-0.02 - length, -0.02), (y[0], y[1]), (0.0, high), wood)])
     return True
 
@@ -47,7 +47,7 @@ def threshold(s: Sketch) -> bool:
     opening = s.draw_opening("door")
     if opening is None:
         return False
-    half, top = 0.5 * s.move_into(opening) - 0.005, float(s.rng.uniform(*THRESHOLD_M))
+    half, top = 0.5 * s.move_into(opening) - 0.005, s.uniform(*THRESHOLD_M)
     s.add("door", [box((-0.07, 0.07), (-half, half), (0.0, top), s.look("wood"))])
     return True
 

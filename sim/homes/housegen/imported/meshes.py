@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from sim.core.errors import HouseError
 from sim.homes.housegen.imported.scene_files import library, load_scene
 from sim.homes.housegen.imported.sources import Entry, Skipped
+from sim.homes.housegen.mjcf.triangles import Facets, triangle_areas
 
 MAX_SOURCE_TRIANGLES = 1_500_000
 MAX_PARTS = 6
@@ -36,6 +37,11 @@ class Part:
     vertices_m: NDArray[np.float64]  # (n, 3)
     faces: NDArray[np.int32]  # (m, 3)
     rgba: tuple[float, float, float, float]
+
+    @property
+    def areas_m2(self) -> NDArray[np.float64]:
+        """Areas (m,) of the triangles."""
+        return triangle_areas(self.vertices_m[self.faces])
 
 
 def check_installed() -> None:
@@ -123,15 +129,9 @@ def _shown_colour(mesh: Any, material: Any, vertices: NDArray, faces: NDArray) -
         middle = np.mod(uv[faces].mean(axis=1), 1.0)
         columns = np.minimum((middle[:, 0] * pixels.shape[1]).astype(int), pixels.shape[1] - 1)
         rows = np.minimum(((1.0 - middle[:, 1]) * pixels.shape[0]).astype(int), pixels.shape[0] - 1)
-        samples, weights = pixels[rows, columns], areas(vertices, faces)
+        samples, weights = pixels[rows, columns], triangle_areas(vertices[faces])
     weights = weights * samples[:, 3] + 1e-9
     return (samples[:, :3] * weights[:, None]).sum(axis=0) / weights.sum()
-
-
-def areas(vertices: NDArray, faces: NDArray) -> NDArray[np.float64]:
-    """Returns the areas of triangles."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
 
 
 # ---- size ------------------------------------------------------------------------------------------------------------
@@ -156,7 +156,7 @@ def _fitted(parts: Sequence[Part], entry: Entry) -> list[Part]:
 
 def _joined(parts: Sequence[Part]) -> tuple[Part, ...]:
     """Returns at most `MAX_PARTS` parts of different colours: those of the most similar colours are joined."""
-    groups = [([part], float(areas(part.vertices_m, part.faces).sum()), np.array(part.rgba)) for part in parts]
+    groups = [([part], float(part.areas_m2.sum()), np.array(part.rgba)) for part in parts]
     groups = [group for group in groups if group[1] > 1e-7]
     if not groups:
         raise Skipped("its mesh has no area")
@@ -178,7 +178,13 @@ def _joined(parts: Sequence[Part]) -> tuple[Part, ...]:
 
 def merged(parts: Sequence[Part], colour: NDArray[np.float64]) -> Part:
     """Returns one part of several, in a colour."""
-    starts = np.cumsum([0, *(len(part.vertices_m) for part in parts[:-1])])
-    faces = np.vstack([part.faces + start for part, start in zip(parts, starts, strict=True)]).astype(np.int32)
     r, g, b, a = (round(float(v), 3) for v in colour)
-    return Part(np.vstack([part.vertices_m for part in parts]), faces, (r, g, b, 1.0 if a > 0.9 else _SEE_THROUGH))
+    vertices, faces = stacked([(part.vertices_m, part.faces) for part in parts])
+    return Part(vertices, faces, (r, g, b, 1.0 if a > 0.9 else _SEE_THROUGH))
+
+
+def stacked(meshes: Sequence[Facets]) -> Facets:
+    """Returns the vertices (n, 3) and the triangles (m, 3) of several meshes as one."""
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in meshes[:-1])])
+    faces = np.vstack([faces + start for (_, faces), start in zip(meshes, starts, strict=True)])
+    return np.vstack([vertices for vertices, _ in meshes]), faces.astype(np.int32)

@@ -10,7 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-from sim.homes.housegen.imported.meshes import Part, areas, merged
+from sim.homes.housegen.imported.meshes import Part, merged
 from sim.homes.housegen.imported.scene_files import library
 from sim.homes.housegen.imported.sources import Skipped
 
@@ -34,10 +34,10 @@ def reduced(parts: Sequence[Part], most: int = MAX_TRIANGLES) -> tuple[Part, ...
         Skipped: nothing is left of the model.
     """
     pieces = [(n, piece) for n, part in enumerate(parts) for piece in _pieces(_clean(part))]
-    pieces.sort(key=lambda entry: -float(areas(entry[1].vertices_m, entry[1].faces).sum()))
+    pieces.sort(key=lambda entry: -float(entry[1].areas_m2.sum()))
     least = np.cumsum([min(MIN_TRIANGLES, len(piece.faces)) for _, piece in pieces])
     pieces = pieces[: int((least <= most).sum())]
-    weights = np.sqrt([len(piece.faces) * areas(piece.vertices_m, piece.faces).sum() for _, piece in pieces])
+    weights = np.sqrt([len(piece.faces) * piece.areas_m2.sum() for _, piece in pieces])
     made: dict[int, list[Part]] = {}
     for (n, piece), share in zip(pieces, weights / max(1e-9, float(weights.sum())), strict=True):
         made.setdefault(n, []).append(_simplified(piece, max(MIN_TRIANGLES, int(share * most))))
@@ -94,14 +94,14 @@ def is_alike(made: Part, piece: Part) -> bool:
     tolerance = 0.004 + 0.03 * np.ptp(piece.vertices_m, axis=0)
     ends = zip((made.vertices_m.min(axis=0), made.vertices_m.max(axis=0)),
                (piece.vertices_m.min(axis=0), piece.vertices_m.max(axis=0)), strict=True)  # fmt: skip
-    area = float(areas(piece.vertices_m, piece.faces).sum())
-    made_area = float(areas(made.vertices_m, made.faces).sum())
+    area = float(piece.areas_m2.sum())
+    made_area = float(made.areas_m2.sum())
     return all((np.abs(a - b) <= tolerance).all() for a, b in ends) and 0.6 * area <= made_area <= 1.4 * area
 
 
 def _scattered(part: Part) -> NDArray[np.float64]:
     """Returns points on the triangles of a part, evenly spread, the same in each run."""
-    weights = areas(part.vertices_m, part.faces)
+    weights = part.areas_m2
     rng = np.random.default_rng(0)
     chosen = part.faces[rng.choice(len(weights), size=ERROR_POINTS, p=weights / weights.sum())]
     shares = rng.dirichlet((1.0, 1.0, 1.0), size=ERROR_POINTS)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import grey_closing
 
 from sim.homes.housegen.imported.meshes import Part
+from sim.homes.housegen.mjcf.triangles import triangle_areas
 
 MAX_BOXES = 12
 MIN_SAVED_M3, MIN_SAVED_SHARE = 0.002, 0.015
@@ -47,12 +48,17 @@ def collision_boxes(parts: tuple[Part, ...], category: str) -> NDArray[np.float6
         groups[best : best + 1] = sides
         cuts[best : best + 1] = [_best_cut(side) for side in sides]
     boxes = np.array([[*group.min(axis=0), *group.max(axis=0)] for group in groups])
-    thin = boxes[:, 3:] - boxes[:, :3] < MIN_SIDE_M
-    middle = 0.5 * (boxes[:, 3:] + boxes[:, :3])
-    boxes[:, :3] = np.where(thin, middle - 0.5 * MIN_SIDE_M, boxes[:, :3])
-    boxes[:, 3:] = np.where(thin, middle + 0.5 * MIN_SIDE_M, boxes[:, 3:])
+    boxes = thickened(boxes)
     boxes[:, 2] = np.maximum(boxes[:, 2], 0.0)
     return np.asarray(np.round(boxes, 3), dtype=np.float64)
+
+
+def thickened(boxes_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns boxes (n, 6) with sides of at least `MIN_SIDE_M`, about their middles."""
+    low, high = boxes_m[:, :3], boxes_m[:, 3:]
+    thin, middle = high - low < MIN_SIDE_M, 0.5 * (low + high)
+    ends = np.where(thin, middle - 0.5 * MIN_SIDE_M, low), np.where(thin, middle + 0.5 * MIN_SIDE_M, high)
+    return np.hstack(ends)
 
 
 def top_of(parts: tuple[Part, ...]) -> tuple[float, float, float, float, float] | None:
@@ -87,7 +93,7 @@ def top_of(parts: tuple[Part, ...]) -> tuple[float, float, float, float, float] 
 def _samples(parts: tuple[Part, ...], count: int = POINTS) -> NDArray[np.float64]:
     """Returns all vertices, and points spread evenly over the triangles, the same in each run."""
     corners = np.vstack([part.vertices_m[part.faces] for part in parts])
-    areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    areas = triangle_areas(corners)
     rng = np.random.default_rng(0)
     chosen = rng.choice(len(corners), size=count, p=areas / areas.sum())
     u, v = rng.random((2, count, 1))

@@ -16,7 +16,8 @@ import numpy as np
 from sim.core.colours import clear_colour_name
 from sim.homes.housegen.furniture.item import Geom, Item, Look
 from sim.homes.housegen.furniture.names import name_of_style
-from sim.homes.housegen.surfaces.textures import TEXTURES
+from sim.homes.housegen.mjcf.triangles import triangle_areas
+from sim.homes.housegen.surfaces.textures import mean_colour
 from sim.houses.instance_facts import InstanceFacts
 
 CLEAR_SHARE = 0.6
@@ -68,9 +69,7 @@ def _colour(look: Look) -> str | None:
     """Returns the name of the mean colour of a look; None if no name is clear, or it shows several colours."""
     if look.rgba[3] < 1.0 or look.material in _PICTURES or (look.texture or "").startswith("view_"):
         return None
-    mean = np.ones(3)
-    if look.texture is not None:
-        mean = TEXTURES[look.texture].pixels().reshape(-1, 3).mean(axis=0) / 255.0
+    mean = (1.0, 1.0, 1.0) if look.texture is None else mean_colour(look.texture)
     return clear_colour_name(np.multiply(look.rgba[:3], mean))
 
 
@@ -79,8 +78,7 @@ def _surface_m2(geom: Geom) -> float:
     if geom.shape == "mesh":
         if geom.mesh is None or not len(geom.mesh.faces):
             return 0.0
-        a, b, c = (geom.mesh.vertices_m[geom.mesh.faces[:, corner]] for corner in range(3))
-        return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+        return float(triangle_areas(geom.mesh.vertices_m[geom.mesh.faces]).sum())
     size = geom.size_m
     if geom.shape == "box":
         x, y, z = size

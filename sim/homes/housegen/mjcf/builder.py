@@ -170,7 +170,7 @@ class HouseBuilder:
         self._describe(name, movable.item)
         x, y = placed.to_world(*movable.offset_m)
         body = self._spec.worldbody.add_body(
-            name=name, pos=[_r(v) for v in (x, y, placed.z_m)], quat=_yaw_quat(placed.yaw_rad)
+            name=name, pos=[_r(v) for v in (x, y, placed.z_m)], quat=_quat((0.0, 0.0, placed.yaw_rad))
         )
         body.add_freejoint()
         body.explicitinertial = True
@@ -208,7 +208,7 @@ class HouseBuilder:
     def _add_body(self, parent: mujoco.MjsBody, item: Item, pos_m: tuple[float, float, float], yaw_rad: float) -> str:
         name = self._label(item.category)
         self._describe(name, item)
-        body = parent.add_body(name=name, pos=[_r(v) for v in pos_m], quat=_yaw_quat(yaw_rad))
+        body = parent.add_body(name=name, pos=[_r(v) for v in pos_m], quat=_quat((0.0, 0.0, yaw_rad)))
         parts = self._assembly(item)
         for geom in parts.visual:
             self._add_geom(body, geom)
@@ -256,11 +256,6 @@ def _r(value: float) -> float:
     rounded up on all.
     """
     return round(float(value) + _HALF_WAY_M, 4) + 0.0
-
-
-def _yaw_quat(yaw_rad: float) -> list[float]:
-    """Returns the unit quaternion (w, x, y, z) of a rotation about z."""
-    return [round(math.cos(yaw_rad / 2), 6) + 0.0, 0.0, 0.0, round(math.sin(yaw_rad / 2), 6) + 0.0]
 
 
 def _quat(euler_rad: tuple[float, float, float]) -> list[float]:

@@ -6,7 +6,6 @@ becomes one mesh for each look, and collides as a few boxes (`sim.homes.housegen
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,7 +17,7 @@ from sim.homes.housegen.furniture.transforms import matrix_from_euler
 from sim.homes.housegen.mjcf.boxes import Box, geom_box
 from sim.homes.housegen.mjcf.collision import collision_boxes
 from sim.homes.housegen.mjcf.triangles import Facets, facets, mesh_shape
-from sim.homes.housegen.surfaces.textures import TEXTURES
+from sim.homes.housegen.surfaces.textures import mean_colour
 
 SLAT_HALF_M, ROD_HALF_M = 0.045, 0.07
 """Textured boards and rods narrower than twice this lose their texture in a mesh: its grain would not be visible."""
@@ -99,7 +98,7 @@ def _plain(geom: Geom) -> Look | None:
         return look
     if geom.mesh is not None or _width_m(geom) >= (SLAT_HALF_M if geom.shape == "box" else ROD_HALF_M):
         return None
-    tone = _mean_colour(look.texture)
+    tone = mean_colour(look.texture)
     r, g, b = (round(a * b, 3) for a, b in zip(look.rgba, tone, strict=False))
     return replace(look, texture=None, rgba=(r, g, b, 1.0))
 
@@ -109,13 +108,6 @@ def _width_m(geom: Geom) -> float:
     if geom.shape == "ellipsoid":
         return max(geom.size_m)
     return sorted(geom.size_m)[1] if geom.shape == "box" else geom.size_m[0]
-
-
-@functools.cache
-def _mean_colour(texture: str) -> tuple[float, float, float]:
-    """Returns the mean RGB of a texture, in [0, 1]."""
-    r, g, b = TEXTURES[texture].pixels().reshape(-1, 3).mean(axis=0) / 255.0
-    return float(r), float(g), float(b)
 
 
 # ---- visual meshes -------------------------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
 from sim.homes.housegen.furniture.item import Geom, Item, MeshShape
 from sim.homes.housegen.furniture.transforms import (
@@ -30,7 +31,7 @@ from sim.homes.housegen.furniture.transforms import (
     rounded_point,
 )
 from sim.homes.housegen.mjcf.collision import collision_boxes
-from sim.homes.housegen.mjcf.triangles import facets
+from sim.homes.housegen.mjcf.triangles import facets, triangle_areas
 
 MAX_PUSH_N = 20.0
 """Largest force that may be needed to push an item: the robot can exert 25 N. Heavier items stay static."""
@@ -207,9 +208,8 @@ def _mass_properties(
         corners, faces = facets(geom)
         world = np.asarray(geom.pos_m) + corners @ matrix_from_euler(*geom.euler_rad).T
         a, b, c = (world[faces[:, k]] for k in range(3))
-        area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
         points += [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)]
-        weights += [area * (FOLIAGE_SHARE if _is_foliage(item, geom) else 1.0)] * 3
+        weights += [triangle_areas(world[faces]) * (FOLIAGE_SHARE if _is_foliage(item, geom) else 1.0)] * 3
     at, share = np.vstack(points), np.concatenate(weights)
     mass = mass_kg * share / share.sum()
     centre = mass @ at / mass_kg
@@ -254,17 +254,14 @@ def _light_kg(part: Sequence[Geom]) -> float | None:
 
 def _separate(geoms: Sequence[Geom]) -> list[list[Geom]]:
     """Returns groups of geoms with boxes that touch, in the order of their first geoms."""
-    boxes = [geom_bounds(geom) for geom in geoms]
-    group = list(range(len(geoms)))
-    for i, (low, high) in enumerate(boxes):
-        for j in range(i):
-            if (np.maximum(low, boxes[j][0]) <= np.minimum(high, boxes[j][1]) + 0.002).all():
-                old, new = group[i], group[j]
-                group = [new if g == old else g for g in group]
-    return [[geom for geom, g in zip(geoms, group, strict=True) if g == number] for number in dict.fromkeys(group)]
+    low, high = np.swapaxes([geom_bounds(geom) for geom in geoms], 0, 1)
+    touching = (np.maximum(low[:, None], low) <= np.minimum(high[:, None], high) + 0.002).all(axis=2)
+    count, group = connected_components(touching)
+    return [[geom for geom, g in zip(geoms, group, strict=True) if g == number] for number in range(count)]
 
 
 def _has_castors(item: Item) -> bool:
+    """Returns whether an item rolls on balls at the floor."""
     return any(geom.shape == "sphere" and geom_bounds(geom)[0][2] < _ON_FLOOR_M for geom in item.geoms)
 
 

@@ -24,6 +24,11 @@ def mesh_shape(kind: str, vertices_m: NDArray[np.float64], faces: NDArray[np.int
     return hashed_mesh(kind, np.asarray(vertices_m, dtype=np.float64) + 1e-9, faces)
 
 
+def triangle_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the areas (m,) of triangles (m, 3, 3)."""
+    return 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+
+
 def facets(geom: Geom) -> Facets:
     """Returns the surface of a geom.
 

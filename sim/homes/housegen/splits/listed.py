@@ -36,7 +36,7 @@ class GeneratedHouses:
         Raises:
             ConfigError: the object has another form.
         """
-        return Recipe.from_json(msgspec.structs.asdict(convert(entry, _Entry, where=where)))
+        return Recipe(**msgspec.structs.asdict(convert(entry, _Entry, where=where)))
 
     def versions(self) -> dict[str, str]:
         """Returns the versions of the generator and of the packages on which a generated house depends."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from sim.homes.housegen.floor_plan.rooms import PLAN_AREA_M2, PlanKind
 
@@ -92,25 +92,6 @@ class Recipe:
     def to_json(self) -> dict[str, object]:
         """Returns the recipe as a JSON object."""
         return {**asdict(self), "rooms": list(self.rooms), "hazards": list(self.hazards)}
-
-    @classmethod
-    def from_json(cls, entry: Mapping[str, Any]) -> Recipe:
-        """Returns the recipe of a JSON object.
-
-        Raises:
-            KeyError, TypeError, ValueError: the object does not have the form that `to_json` writes.
-        """
-        return cls(
-            name=str(entry["name"]),
-            seed=int(entry["seed"]),
-            pool=entry["pool"],
-            kind=entry["kind"],
-            area_m2=float(entry["area_m2"]),
-            rooms=tuple(entry["rooms"]),
-            movable=bool(entry["movable"]),
-            storeys=int(entry.get("storeys", 1)),
-            hazards=tuple(entry.get("hazards", ())),
-        )
 
 
 def _is_movable(number: int) -> bool:

@@ -56,10 +56,10 @@ def build_structure(
     for i, room in enumerate(plan.rooms):
         here = [opening for opening in openings if i in (opening.a, opening.b)]
         is_hall = i == plan.stair_hall()
-        items = [
-            _floor(room.rect, looks.floors[room.name], floor_hole if is_hall else None),
-            _ceiling(room.rect, ceiling_m, looks.ceiling, ceiling_hole if is_hall else None),
-        ]
+        floor = _plates(room.rect, floor_hole if is_hall else None, -SLAB_M, 0.0, looks.floors[room.name])
+        top_m = ceiling_m + CEILING_M
+        ceiling = _plates(room.rect, ceiling_hole if is_hall else None, ceiling_m, top_m, looks.ceiling)
+        items = [structure_item("floor", "room", floor), structure_item("ceiling", "room", ceiling)]
         items += _room_walls(rects, i, here, ceiling_m, looks.walls[room.name], looks.trim)
         placed += [PlacedItem(item) for item in items]
     opening_items = OpeningItems(looks)
@@ -69,14 +69,6 @@ def build_structure(
         elif opening.kind in ("door", "entry"):
             placed += place_door(opening, opening_items)
     return placed
-
-
-def _floor(rect: Rect, look: Look, hole: Rect | None) -> Item:
-    return structure_item("floor", "room", _plates(rect, hole, -SLAB_M, 0.0, look))
-
-
-def _ceiling(rect: Rect, ceiling_m: float, look: Look, hole: Rect | None) -> Item:
-    return structure_item("ceiling", "room", _plates(rect, hole, ceiling_m, ceiling_m + CEILING_M, look))
 
 
 def _plates(rect: Rect, hole: Rect | None, z0_m: float, z1_m: float, look: Look) -> list[Geom]:

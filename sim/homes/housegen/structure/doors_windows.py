@@ -91,9 +91,19 @@ def place_door(hole: Opening, items: OpeningItems) -> list[PlacedItem]:
 
 
 def place_leaf(hole: Opening, items: OpeningItems) -> PlacedItem:
-    """Returns the leaf of an inner door, `hole.leaf`, at the angle to which it is open."""
+    """Returns the leaf of an inner door, `hole.leaf`, turned about its hinge into the room that it opens to."""
+    assert hole.leaf is not None
     lo, hi = hole.clear_span()
-    return _ajar(items.leaf(round(hi - lo - 0.004, 4), hole.top_m - JAMB_M - 0.006, 0.01), hole)
+    leaf = items.leaf(round(hi - lo - 0.004, 4), hole.top_m - JAMB_M - 0.006, 0.01)
+    side = hole.side_of(hole.leaf.room)
+    along = math.pi / 2 if side in ("east", "west") else 0.0
+    closed = along if hole.leaf.hinge_at_start else along + math.pi
+    swing = 1.0 if math.sin(INWARD_YAW_RAD[side] - closed) > 0 else -1.0
+    at_hinge = (lo + 0.002) if hole.leaf.hinge_at_start else (hi - 0.002)
+    x, y = side_point(side, at_hinge, hole.line_m - outward(side) * (HALF_WALL_M + 0.004 + 0.02))
+    angle_rad, widest_rad = hole.leaf.angle_rad, hole.leaf.widest_rad
+    hinge = None if widest_rad is None else Hinge(angle_rad, widest_rad, turns_left=swing > 0)
+    return PlacedItem(leaf, x, y, 0.0, closed + swing * angle_rad, hinge)
 
 
 def _frame(width_m: float, top: float, outside: bool, looks: StructureLooks) -> Item:
@@ -125,18 +135,3 @@ def _leaf_geoms(width_m: float, high_m: float, looks: StructureLooks, gap_m: flo
     handle = [(at - 0.012, at + 0.012, -half - 0.05, half + 0.05, 1.01, 1.03)]
     handle += [(at - 0.11, at + 0.012, s - 0.009, s + 0.009, 1.008, 1.032) for s in (-half - 0.05, half + 0.05)]
     return [*geoms, *visual_boxes(handle, looks.handle)]
-
-
-def _ajar(leaf: Item, hole: Opening) -> PlacedItem:
-    """Returns the leaf of an inner door, turned about its hinge into the room that it opens to."""
-    assert hole.leaf is not None
-    lo, hi = hole.clear_span()
-    side = hole.side_of(hole.leaf.room)
-    along = math.pi / 2 if side in ("east", "west") else 0.0
-    closed = along if hole.leaf.hinge_at_start else along + math.pi
-    swing = 1.0 if math.sin(INWARD_YAW_RAD[side] - closed) > 0 else -1.0
-    at_hinge = (lo + 0.002) if hole.leaf.hinge_at_start else (hi - 0.002)
-    x, y = side_point(side, at_hinge, hole.line_m - outward(side) * (HALF_WALL_M + 0.004 + 0.02))
-    angle_rad, widest_rad = hole.leaf.angle_rad, hole.leaf.widest_rad
-    hinge = None if widest_rad is None else Hinge(angle_rad, widest_rad, turns_left=swing > 0)
-    return PlacedItem(leaf, x, y, 0.0, closed + swing * angle_rad, hinge)

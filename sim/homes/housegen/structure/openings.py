@@ -35,6 +35,10 @@ _STOREY_M = 3.0
 """Height of a storey in the plan rules, which only tell storeys apart."""
 HEAD_M = 2.1
 """Height of the upper edge of doors, openings and windows."""
+NO_LINTEL_M = 1e3
+"""The same for passages up to the ceiling: above any ceiling."""
+_FROM_CORNER_M = 0.08
+"""Smallest wall between a door and the corner of a room."""
 
 LEAF_SHARE, OPEN_SHARE, AJAR_SHARE = 0.8, 0.72, 0.5
 """Shares of the doors that get a leaf, of the leaves that are wide open, and of the others that are only ajar, where a
@@ -43,8 +47,10 @@ PRIVATE = frozenset({"bathroom", "bedroom"})
 """Rooms whose doors all have a leaf where one fits."""
 HALF_OPEN_GAP_M, AJAR_GAP_M = (0.52, 0.64), (0.10, 0.34)
 """Gaps beside a leaf that is half open, through which the robot of 0.36 m passes, and beside one that is ajar."""
-
 HALF_OPEN_RAD = np.deg2rad(70.0)
+"""A leaf that is more open than this leaves the doorway free."""
+WIDEST_DEG, WIDEST_AT_WALL_DEG, AT_WALL_M = 110.0, 92.0, 0.6
+"""Largest angle of a leaf, that of a leaf with a wall next to it, and the distance up to which the wall limits it."""
 BESIDE_M, BEYOND_M = 0.35, 0.6
 """Floor that stays free next to the doorway on the side of the edge of a leaf that is half open, and past that edge."""
 AJAR_RAD = np.deg2rad(28.0)
@@ -206,27 +212,27 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tu
     side, (lo, hi) = shared
     line_m, inner = a.rect.line(side), (lo + HALF_WALL_M, hi - HALF_WALL_M)
     if join.kind == "open":
-        return Opening("open", join.a, join.b, side, line_m, inner, 0.0, 1e3)
+        return Opening("open", join.a, join.b, side, line_m, inner, 0.0, NO_LINTEL_M)
     length_m = inner[1] - inner[0]
     if join.kind == "partial" and length_m > 1.8:
         width_m = max(round(length_m * float(rng.uniform(0.45, 0.75)), 2), 1.2)
         stub_m = min(0.35, (length_m - width_m) / 2)
         at = round(inner[0] + stub_m + float(rng.uniform(0.0, 1.0)) * (length_m - width_m - 2 * stub_m), 2)
-        return Opening("open", join.a, join.b, side, line_m, (at, round(at + width_m, 2)), 0.0, 1e3)
+        return Opening("open", join.a, join.b, side, line_m, (at, round(at + width_m, 2)), 0.0, NO_LINTEL_M)
     if join.kind == "opening" and length_m > 1.5:
         width_m = min(round(float(rng.uniform(1.3, 2.4)), 2), length_m - 0.2)
         at = inner[0] + 0.1 + float(rng.uniform(0.0, 1.0)) * max(0.0, length_m - 0.2 - width_m)
         return Opening("opening", join.a, join.b, side, line_m, (round(at, 2), round(at + width_m, 2)), 0.0, HEAD_M)
     small = "bathroom" in (a.kind, b.kind) or "closet" in (a.kind, b.kind)
     width_m = (clear_m[0] if small else clear_m[1]) + 2 * JAMB_M
-    if length_m < width_m + 0.16:
+    if length_m < width_m + 2 * _FROM_CORNER_M:
         width_m = clear_m[0] + 2 * JAMB_M
-    if length_m < width_m + 0.16:
+    if length_m < width_m + 2 * _FROM_CORNER_M:
         raise PlanError(f"{a.name} and {b.name} share only {length_m:.2f} m of wall")
-    spare = max(0.0, length_m - width_m - 0.16)
+    spare = max(0.0, length_m - width_m - 2 * _FROM_CORNER_M)
     # Near a corner, which leaves a long wall for furniture.
     offset = float(rng.uniform(0.0, min(0.3, spare))) if rng.random() < 0.75 else float(rng.uniform(0.0, spare))
-    at = inner[0] + 0.08 + offset if rng.random() < 0.5 else inner[1] - 0.08 - offset - width_m
+    at = inner[0] + _FROM_CORNER_M + offset if rng.random() < 0.5 else inner[1] - _FROM_CORNER_M - offset - width_m
     return Opening("door", join.a, join.b, side, line_m, (round(at, 3), round(at + width_m, 3)), 0.0, HEAD_M)
 
 
@@ -266,12 +272,10 @@ def _hung(
     side = opening.side_of(room)
     lo, hi = rect.span(side)
     width_m = opening.span[1] - opening.span[0]
-    depth_m = rect.depth_m if side in ("north", "south") else rect.width_m
-    if plan.rooms[room].kind == "hallway" or depth_m < width_m + 0.75:
+    if plan.rooms[room].kind == "hallway" or rect.across_m(side) < width_m + 0.75:
         return None
     gap_m = opening.span[0] - lo if at_start else hi - opening.span[1]
-    # The wall next to a leaf limits its angle; without such a wall the leaf may open a little further.
-    widest_deg = 92.0 if gap_m < 0.6 else 110.0
+    widest_deg = WIDEST_AT_WALL_DEG if gap_m < AT_WALL_M else WIDEST_DEG
     only_door = sum(room in (other.a, other.b) for other in others) == 1
     angle_deg = _draw_angle(rng, width_m - 2 * JAMB_M, widest_deg, may_be_ajar=only_door and room != plan.entry)
     leaf = Leaf(room, at_start, float(np.deg2rad(round(angle_deg))), float(np.deg2rad(widest_deg)))

@@ -254,7 +254,7 @@ def palettes(pool: Pool) -> tuple[str | None, ...]:
     return MATERIALS["small"].swatches(pool).textures
 
 
-def wall_look(rng: np.random.Generator, pool: Pool, room_kind: str = "") -> Look:
+def wall_look(rng: np.random.Generator, pool: Pool, room_kind: str) -> Look:
     """Returns the look of a wall: paint or wallpaper, mostly tiles in wet rooms."""
     tiled = room_kind in ("bathroom", "laundry") and rng.random() < 0.7
     return _draw(_WALL_TILES if tiled else _WALLS, rng, pool)
@@ -299,12 +299,7 @@ def _draw(material: Material, rng: np.random.Generator, pool: Pool) -> Look:
     swatches = material.swatches(pool)
     colour = swatches.colours[int(rng.integers(len(swatches.colours)))]
     texture = swatches.textures[int(rng.integers(len(swatches.textures)))]
-    return _look(colour, texture, material.specular, material.shininess, material.emission)
-
-
-def _look(colour: str, texture: str | None, specular: float, shininess: float, emission: float = 0.0) -> Look:
-    rgba = [round(int(colour[i : i + 2], 16) / 255, 3) for i in range(0, len(colour), 2)]
-    if len(rgba) == 3:
-        rgba.append(1.0)
+    red, green, blue, *alpha = (round(part / 255, 3) for part in bytes.fromhex(colour))
     repeat_m = TEXTURES[texture].tile_m if texture else 1.0
-    return Look((rgba[0], rgba[1], rgba[2], rgba[3]), texture, repeat_m, specular, shininess, emission)
+    rgba = (red, green, blue, alpha[0] if alpha else 1.0)
+    return Look(rgba, texture, repeat_m, material.specular, material.shininess, material.emission)

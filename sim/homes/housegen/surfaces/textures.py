@@ -7,6 +7,7 @@ belongs to one pool: train houses never show a held-out one.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -194,3 +195,10 @@ _MIRRORS = (
 
 TEXTURES: dict[str, Texture] = {texture.name: texture for texture in (*_ALL, *_VIEWS, *_MIRRORS)}
 """The textures by name; a `Look.texture` is one of these names."""
+
+
+@functools.cache
+def mean_colour(texture: str) -> tuple[float, float, float]:
+    """Returns the mean RGB of a texture, in [0, 1]."""
+    r, g, b = TEXTURES[texture].pixels().reshape(-1, 3).mean(axis=0) / 255.0
+    return float(r), float(g), float(b)

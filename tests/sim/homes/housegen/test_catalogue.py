@@ -88,10 +88,13 @@ def test_uses_are_optional_where_rooms_ask_without_one_and_free_in_new_categorie
         assert block in CATALOGUE.with_styles(block).styles(category)
 
 
-def test_every_allowed_use_has_a_shipped_style_and_every_category_is_listed():
+@pytest.mark.parametrize("pool", ["train", "heldout"])
+def test_every_pool_has_styles_of_every_listed_category_and_use_and_no_others(pool):
     assert set(USES) == set(CATALOGUE.categories)
     for category, uses in USES.items():
-        assert set(uses) == {use for style in CATALOGUE.styles(category) for use in style.uses}, category
+        styles = CATALOGUE.styles(category, pool)
+        assert styles, category
+        assert set(uses) == {use for style in styles for use in style.uses}, category
 
 
 def test_a_replacement_of_another_category_is_refused():

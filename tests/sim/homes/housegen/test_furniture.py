@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections import defaultdict
 from functools import cache
 
 import cv2
@@ -24,7 +23,7 @@ from sim.homes.housegen.surfaces import materials
 from sim.homes.housegen.surfaces.textures import TEXTURES
 from tests.helpers.sampling import sample
 
-STYLES = [style for category in CATALOGUE.categories for style in CATALOGUE.styles(category)]
+STYLES = CATALOGUE.all_styles
 SEEDS = (0, 1, 2)
 TOUCH_M = 0.01
 FAR_M = 0.05
@@ -201,17 +200,6 @@ def test_every_goal_has_enough_styles_in_both_pools():
     for category in GOAL_CATEGORIES:
         assert len(CATALOGUE.styles(category, "train")) >= 4, category
         assert len(CATALOGUE.styles(category, "heldout")) >= 2, category
-        assert len(CATALOGUE.styles(category)) >= 6, category
-
-
-@pytest.mark.parametrize("category", CATALOGUE.categories)
-def test_every_use_exists_in_both_pools(category):
-    uses = defaultdict(set)
-    for style in CATALOGUE.styles(category):
-        uses[style.pool].update(style.uses)
-    assert uses["train"] == uses["heldout"]
-    assert CATALOGUE.styles(category, "train")
-    assert CATALOGUE.styles(category, "heldout")
 
 
 @pytest.mark.slow
@@ -289,10 +277,8 @@ def test_euler_angles_of_a_vertical_pitch_give_the_same_rotation():
     assert matrix_from_euler(*euler_from_matrix(matrix)) == pytest.approx(matrix, abs=2e-4)
 
 
-@pytest.mark.parametrize("name", TEXTURES)
-def test_textures_have_no_seam(name):
-    if TEXTURES[name].tile_m == 0.0:
-        pytest.skip("shown once, never repeated")
+@pytest.mark.parametrize("name", [name for name, texture in TEXTURES.items() if texture.tile_m > 0.0])
+def test_textures_that_repeat_have_no_seam(name):
     image = TEXTURES[name].pixels().astype(float)
     inside = np.abs(np.diff(image, axis=0)).mean(), np.abs(np.diff(image, axis=1)).mean()
     across = np.abs(image[0] - image[-1]).mean(), np.abs(image[:, 0] - image[:, -1]).mean()

@@ -175,15 +175,6 @@ def test_every_recipe_has_a_plan_without_a_fault(recipe: Recipe) -> None:
     assert not Counter(config.rooms) - Counter(room.kind for room in plan.rooms)
 
 
-def test_val_and_test_mix_sizes_as_homes_do() -> None:
-    for split in ("val", "test"):
-        areas = [recipe.area_m2 for recipe in SPLITS[split]]
-        assert len(areas) == 30
-        assert 60.0 <= min(areas) <= max(areas) <= 250.0
-        assert sum(area > 120.0 for area in areas) == 10
-        assert {recipe.kind for recipe in SPLITS[split]} >= set(PLAN_AREA_M2) - {"estate"}
-
-
 def test_a_written_house_is_read_from_its_folder_wherever_that_is(tmp_path: Path) -> None:
     written = write_house(small(3).spec.copy(), tmp_path / "first", "home")
     moved = (tmp_path / "first").rename(tmp_path / "second") / written.name

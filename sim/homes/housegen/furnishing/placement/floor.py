@@ -69,7 +69,7 @@ def put_near(
     side: Side,
     at: float,
     *,
-    front_m: float = 0.6,
+    front_m: float,
     slide_m: float = 0.8,
     fits: Callable[[Placement], bool] = lambda _: True,
 ) -> Placement | None:

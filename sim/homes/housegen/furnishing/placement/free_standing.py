@@ -28,7 +28,7 @@ def put_in_middle(
     *,
     around_m: float,
     least: float = 0.0,
-    apart_m: float = 0.0,
+    apart_m: float,
     near: tuple[float, float] | None = None,
 ) -> Placement | None:
     """Puts an item where most of its seats can be used, preferably near the middle of the room.

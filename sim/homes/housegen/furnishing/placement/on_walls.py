@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from sim.homes.housegen.floor_plan.rectangles import INWARD_YAW_RAD, SIDES, Side, footprint
+from sim.homes.housegen.floor_plan.rectangles import INWARD_YAW_RAD, SIDES, Rect, Side, footprint
 from sim.homes.housegen.furnishing.placement.layout import ROBOT_HEIGHT_M, RoomLayout
 from sim.homes.housegen.furnishing.placement.records import Placement
 from sim.homes.housegen.furnishing.placement.walls import Along
@@ -46,13 +46,19 @@ def hang_on_wall(
         fits: returns whether a position is suitable otherwise; it is called before the item is added.
     """
     bottom_m = item.mount_height_m if bottom_m is None else bottom_m
+    is_low = bottom_m < ROBOT_HEIGHT_M and item.size_m[0] > SHALLOW_M
     order = list(sides) if sides is not None else [SIDES[i] for i in rng.permutation(4)]
     for side in order:
         positions = [at] if at is not None else layout.walls.positions(rng, side, item.size_m[1], along, 0.1)
         for position in positions:
-            placement = _hang_at(layout, item, side, position, bottom_m, margin_m, over_floor, fits)
-            if placement is not None:
-                return placement
+            placement = _on_wall(layout, item, side, position, bottom_m)
+            free = is_wall_free(layout, item, side, position, bottom_m, margin_m=margin_m, over_floor=over_floor)
+            if not free or not fits(placement) or (is_low and not _leaves_room(layout, placement.rect)):
+                continue
+            if is_low:
+                layout.grid.occupy(placement.rect)
+            layout.add(placement, 0.0 if over_floor else bottom_m, bottom_m + item.size_m[2])
+            return placement
     return None
 
 
@@ -79,32 +85,11 @@ def is_wall_free(
     )
 
 
-def _hang_at(
-    layout: RoomLayout,
-    item: Item,
-    side: Side,
-    at: float,
-    bottom_m: float,
-    margin_m: float,
-    over_floor: bool,
-    fits: Callable[[Placement], bool],
-) -> Placement | None:
-    """Hangs an item at one position along a wall; returns None if it does not fit."""
-    placement = _on_wall(layout, item, side, at, bottom_m)
-    rect = placement.rect
-    free = is_wall_free(layout, item, side, at, bottom_m, margin_m=margin_m, over_floor=over_floor)
-    if not free or not fits(placement):
-        return None
-    if bottom_m < ROBOT_HEIGHT_M and item.size_m[0] > SHALLOW_M:
-        if (
-            layout.in_reserved_zone(rect)
-            or layout.narrows_hallway(rect)
-            or not layout.grid.stays_walkable(rect, [rect])
-        ):
-            return None
-        layout.grid.occupy(rect)
-    layout.add(placement, 0.0 if over_floor else bottom_m, bottom_m + item.size_m[2])
-    return placement
+def _leaves_room(layout: RoomLayout, rect: Rect) -> bool:
+    """Returns whether the robot can still pass and reach everything with a low item at a wall."""
+    return not (layout.in_reserved_zone(rect) or layout.narrows_hallway(rect)) and layout.grid.stays_walkable(
+        rect, [rect]
+    )
 
 
 def hang_before_window(layout: RoomLayout, item: Item, side: Side, window: Opening) -> bool:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, Rect, Side, footprint
 from sim.homes.housegen.furniture.item import Geom, Item
-from sim.homes.housegen.furniture.transforms import euler_from_matrix, geom_bounds, matrix_from_euler
+from sim.homes.housegen.furniture.transforms import geom_bounds, rotated
 from sim.homes.housegen.mjcf.placed import PlacedItem
 
 TOUCH_M = 0.015
@@ -50,15 +50,8 @@ def zone_in_front(rect: Rect, back: Side, length_m: float) -> Rect:
 
 def geom_boxes(geoms: Sequence[Geom], placed: PlacedItem) -> NDArray[np.float64]:
     """Returns (n, 6) axis-aligned boxes x0 y0 z0 x1 y1 z1 in the world, one around each geom of a placed item."""
-    turn = matrix_from_euler(0.0, 0.0, placed.yaw_rad)
-    shift = np.array([placed.x_m, placed.y_m, placed.z_m])
-    boxes = []
-    for geom in geoms:
-        x, y, z = (float(v) for v in turn @ geom.pos_m)
-        euler = euler_from_matrix(turn @ matrix_from_euler(*geom.euler_rad))
-        low, high = geom_bounds(replace(geom, pos_m=(x, y, z), euler_rad=euler))
-        boxes.append(np.concatenate([low + shift, high + shift]))
-    return np.array(boxes).reshape(-1, 6)
+    boxes = [np.concatenate(geom_bounds(rotated(geom, placed.yaw_rad))) for geom in geoms]
+    return np.array(boxes).reshape(-1, 6) + [placed.x_m, placed.y_m, placed.z_m] * 2
 
 
 def boxes_touch(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:

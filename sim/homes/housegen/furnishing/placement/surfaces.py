@@ -9,7 +9,7 @@ import numpy as np
 from sim.homes.housegen.floor_plan.rectangles import Rect, footprint, rotated_extent
 from sim.homes.housegen.furnishing.placement.layout import RoomLayout
 from sim.homes.housegen.furnishing.placement.records import Placement
-from sim.homes.housegen.furniture.item import Item, Surface
+from sim.homes.housegen.furniture.item import Item
 from sim.homes.housegen.mjcf.placed import PlacedItem
 
 MAX_TRIES = 8
@@ -39,7 +39,7 @@ def put_on_surface(
     for n, surface in enumerate(host.item.surfaces):
         if surface.kind != "top" or number not in (None, n):
             continue
-        if _put_on(layout, rng, host, n, surface, item, face, back):
+        if _put_on(layout, rng, host, n, item, face, back):
             return True
     return False
 
@@ -60,12 +60,12 @@ def _put_on(
     rng: np.random.Generator,
     host: Placement,
     number: int,
-    surface: Surface,
     item: Item,
     face: float | None,
     back: bool,
 ) -> bool:
-    """Puts an item at a free place of one surface, given with its number; returns False if it has no such place."""
+    """Puts an item at a free place of one surface, given by its number; returns False if it has no such place."""
+    surface = host.item.surfaces[number]
     used = layout.used_on_surface(host, number)
     cx, cy, cz = surface.centre_m
     for n in range(MAX_TRIES):

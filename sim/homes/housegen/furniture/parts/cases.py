@@ -1,12 +1,10 @@
-"""Tops and bodies of tables and cabinets, and worktops with their sink and hob."""
+"""Tops and bodies of tables and cabinets."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts.looks import glass_edge, tinted_glass
-from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, around, footprint, inset, on_side
+from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, footprint, inset, on_side
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 GLASS_EDGE_M = 0.008
@@ -52,63 +50,11 @@ def case(w: Workbench, depth: float, width: float, z: Range, look: Look, *, foot
     return x[1], y
 
 
-def open_case(w: Workbench, x: Range, y: Range, z: Range, board: float, look: Look) -> None:
+def open_case(w: Workbench, x: Range, y: Range, z: Range, look: Look) -> None:
     """Adds the boards of a box that is open in front."""
+    board = 0.02
     for edge in (y[0], y[1] - board):
         w.box(x, (edge, edge + board), z, look)
     for low in (z[0], z[1] - board):
         w.box(x, inset(y, board), (low, low + board), look)
     w.box((x[0], x[0] + 0.012), inset(y, board), inset(z, board), look)
-
-
-def worktop(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: tuple[Range, Range] | None) -> None:
-    """Adds a slab, if asked with a rectangular hole, given as x and y ranges, for a sink."""
-    if hole is None:
-        w.box(x, y, z, look)
-        return
-    (hx0, hx1), (hy0, hy1) = hole
-    w.box(x, (y[0], hy0), z, look)
-    w.box(x, (hy1, y[1]), z, look)
-    w.box((x[0], hx0), (hy0, hy1), z, look)
-    w.box((hx1, x[1]), (hy0, hy1), z, look)
-
-
-_HOB_APART = 0.9
-"""Distance between the middles of a sink and a hob that leaves 0.3 m of worktop between them."""
-
-
-def worktop_fittings(w: Workbench, y: Range, z: float) -> tuple[tuple[Range, Range] | None, list[Range]]:
-    """Adds a sink and a hob to a worktop with its upper face at z; hints `with_sink`, `with_hob`.
-
-    Returns:
-        The x and y ranges of the sink's hole, or None, and the y ranges that stay free.
-    """
-    width, taken, hole, sink_y = y[1] - y[0], [], None, None
-    with_sink = width >= 0.75 and w.flag("with_sink", 0.35)
-    with_hob = width > 1.3 and w.flag("with_hob", 0.25)
-    if with_sink:
-        from_end = 0.38 if with_hob else 0.6  # 0.3 m of worktop before a cooker at the end
-        sink_y = w.length(y[0] + from_end, y[1] - from_end) if width > 2 * from_end else 0.5 * (y[0] + y[1])
-        low, high = y[1] - 0.36 - _HOB_APART, y[0] + 0.36 + _HOB_APART
-        if with_hob and y[0] + 0.3 < low < sink_y < high:
-            sink_y = low
-        w.put(w.make("sink", use="inset"), (0.0, sink_y, z - 0.18))
-        hole = ((-0.20, 0.20), around(sink_y, 0.24))
-        taken.append(around(sink_y, 0.30))
-    if with_hob:
-        places = [p for p in inset(y, 0.36) if sink_y is None or abs(p - sink_y) > _HOB_APART - 0.01]
-        if places:
-            place = w.choice(places)
-            w.put(w.make("appliances", use="hob"), (0.0, place, z))
-            taken.append(around(place, 0.32))
-    return hole, _free_ranges(y, taken)
-
-
-def _free_ranges(y: Range, taken: Sequence[Range]) -> list[Range]:
-    """Returns the parts of a range outside the taken ones that are longer than 0.25 m."""
-    free, start = [], y[0]
-    for low, high in sorted(taken):
-        free.append((start, low))
-        start = high
-    free.append((start, y[1]))
-    return [r for r in free if r[1] - r[0] > 0.25]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.homes.housegen.furniture.item import MeshShape
-from sim.homes.housegen.furniture.shapes import BOX_CORNERS, BOX_FACES, hashed_mesh
+from sim.homes.housegen.furniture.shapes import BOX_CORNERS, BOX_FACES, hashed_mesh, ring_faces
 from sim.homes.housegen.furniture.transforms import roll_tilt_turn
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
@@ -111,12 +111,4 @@ def _revolved(rings: Sequence[tuple[float, float]], sides: int) -> tuple[NDArray
     turns = (np.arange(sides) + 0.5) * (2.0 * np.pi / sides)
     circle = np.column_stack([np.cos(turns), np.sin(turns)])
     points = [np.column_stack([radius * circle, np.full(sides, z)]) for z, radius in rings]
-    faces: list[tuple[int, int, int]] = []
-    for level in range(len(rings) - 1):
-        for i in range(sides):
-            a, b = level * sides + i, level * sides + (i + 1) % sides
-            faces += [(a, b, b + sides), (a, b + sides, a + sides)]
-    last = (len(rings) - 1) * sides
-    for i in range(1, sides - 1):
-        faces += [(0, i + 1, i), (last, last + i, last + i + 1)]
-    return np.vstack(points), np.array(faces, dtype=np.int32)
+    return np.vstack(points), np.array(ring_faces(len(rings), sides), dtype=np.int32)
