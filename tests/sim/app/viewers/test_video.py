@@ -491,6 +491,26 @@ def test_the_explanation_of_the_end_names_its_cause(line: dict, nearest_m: float
     assert outcome.found == bool(whole.success)
 
 
+@pytest.mark.parametrize(
+    ("line", "nearest_m", "expected"),
+    [
+        ({"success": 1.0, "end_reason": "stop"}, 0.72, "The STOP counts: the nearest clothes are 0.72 m away"),
+        (BESIDE, 0.8, "the nearest clothes are 0.80 m away, but a wall or a door hides them."),
+        (WRONG, None, "there are no clothes on this storey"),
+        (
+            FOR_ANOTHER | {"stop_target_category": "appliances"}, 4.2,
+            "the agent stopped at an appliance, 1.8 m from the nearest clothes.",
+        ),
+    ],
+)  # fmt: skip
+def test_the_explanation_of_the_end_has_the_number_of_its_noun(
+    line: dict, nearest_m: float | None, expected: str
+) -> None:
+    fixed = {"success": 0.0, "spl": 0.5, "num_steps": 9, "path_length": 3.0, "shortest_path": 2.0}
+    outcome = explain_end(a_result(**fixed | line), "clothes", SuccessRule(), nearest_m, detects=True)
+    assert expected in outcome.sentence
+
+
 @pytest.mark.parametrize("semantics", ["gt", "noisy"])
 def test_reading_the_agents_perception_twice_changes_nothing(house: Path, semantics: str) -> None:
     truth = (*VIEWER_IMAGES, "geom")
