@@ -582,6 +582,15 @@ def test_nothing_runs_out_of_a_narrow_window(browser: Browser, pair: tuple[Path,
         assert max(browser.run(edges)) <= width
 
 
+def test_no_cause_of_a_failure_is_clipped_on_a_phone(browser: Browser, pair: tuple[Path, Path]) -> None:
+    failed = [line | {"success": 0.0, "failure": "missed_detection"} for line in _lines(pair[1])]
+    _write_lines(pair[1], failed)
+    _open(browser, pair[1])
+    browser.resize(390, 800)
+    clipped = "return [...document.querySelectorAll('.scroll')].filter(box => box.scrollWidth > box.clientWidth).length"
+    assert browser.run(clipped) == 0
+
+
 OVERFLOW = """
 return [...document.querySelectorAll('.scroll')].filter(box => box.scrollWidth > box.clientWidth).length
   + (document.documentElement.scrollWidth > innerWidth)"""
