@@ -127,7 +127,8 @@ def describe_intention(agent: StubbornAgent) -> str:
     if agent.approach is not None:
         return "looks at a candidate" if agent.approach.route is None else "goes to a candidate"
     if agent.route is None:
-        return "gets unstuck or looks around"
+        stuck = agent.untrap.active or agent.last_action is Action.MOVE_FORWARD  # forward: the map shows no path
+        return "gets unstuck" if stuck else "looks around"
     return "explores: to the next place" if agent.route.goal.marker_xy_m is None else "explores: to a corner"
 
 

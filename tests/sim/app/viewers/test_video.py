@@ -208,7 +208,7 @@ INFO = {"collided": True, "distance_to_goal": 123.4, "collisions": 499, "path_le
 
 @pytest.mark.parametrize("goal", ["bed", "chest_of_drawers", "gym_equipment"])
 def test_no_text_leaves_the_frame_or_lies_on_another(goal: str, written: list[tuple[str, Box]]) -> None:
-    state = "gets unstuck or looks around, and says so in a sentence that nobody has shortened for the video"
+    state = "goes to a candidate, and says so in a sentence that nobody has shortened for the video"
     panel = overlay.MapPanel(image=PLAN, words=state)
     composer = overlay.FrameComposer(
         goal,
