@@ -370,6 +370,33 @@ def test_the_robot_stands_in_the_middle_of_the_chase_view_and_a_wall_behind_it_d
     assert before_a_wall > 0.4  # without the cut, the wall at x = -3 m would cover it
 
 
+def test_the_arrow_on_the_robot_leans_with_its_body(env: ObjectNavEnv, monkeypatch: pytest.MonkeyPatch) -> None:
+    env.reset(options={"episode": replace(EPISODE, start=Pose(0.0, 0.0, 0.0))})
+    view, world = ChaseView(env.scene, width_px=200, height_px=120), env.scene.world
+
+    def row_of_arrow(pitch_rad: float) -> float:
+        leaning = replace(upright, pitch_rad=pitch_rad)
+        monkeypatch.setattr(type(world), "body_pose", property(lambda _: leaning))
+        picture = view.render().astype(int)
+        return float(np.nonzero(picture[..., 2] > 2 * picture[..., 0] + 10)[0].mean())
+
+    upright = world.body_pose
+    assert row_of_arrow(0.2) < row_of_arrow(0.0) < row_of_arrow(-0.2)
+    view.close()
+
+
+def test_a_finer_chase_view_has_the_same_size_and_smoother_edges(env: ObjectNavEnv) -> None:
+    env.reset(options={"episode": replace(EPISODE, start=Pose(0.0, 0.0, 0.3))})
+    rough, fine = (ChaseView(env.scene, width_px=200, height_px=120, finer=finer) for finer in (1, 2))
+    pictures = [view.render().astype(int) for view in (rough, fine)]
+    rough.close()
+    fine.close()
+    steps = [np.abs(np.diff(picture, axis=1)).max(axis=-1) for picture in pictures]
+    assert pictures[0].shape == pictures[1].shape == (120, 200, 3)
+    assert np.abs(pictures[0] - pictures[1]).mean() < 10
+    assert np.quantile(steps[1], 0.99) < np.quantile(steps[0], 0.99)
+
+
 def test_an_observed_image_is_shown_and_the_true_one_if_it_was_not_observed() -> None:
     truth = {"rgb": np.zeros((2, 2, 3), np.uint8), "depth": np.ones((2, 2), np.float32)}
     noisy = np.full((2, 2), 2.0, np.float32)
