@@ -41,7 +41,7 @@ _CAUSES: Mapping[str, str] = {
     "missed_detection": "The goal was in sight, but the agent drove on.",
     "trapped": f"The robot was trapped: {TRAPPED}.",
     "loop": "The robot drove in a loop.",
-    "explore": "The goal was never in sight.",
+    "explore": f"The goal never covered {100 * EXPLORED_SHARE:g} % of an image.",
     "stairs": "The goal is on another storey.",
 }
 MEANING: Mapping[str, str] = {
@@ -50,7 +50,7 @@ MEANING: Mapping[str, str] = {
     "missed_detection": "The goal was in view and the agent did not go to it.",
     "loop": f"{LOOP_STEPS} steps on ground where the robot had been before.",
     "trapped": f"{TRAPPED}.",
-    "explore": "The goal never came into view before the steps ran out.",
+    "explore": f"The goal never covered {100 * EXPLORED_SHARE:g} % of an image before the steps ran out.",
     "stairs": "The goal is on another storey, or the robot drove over an edge.",
     "misc": "No other rule applies: the steps ran out on the path to the goal or at the goal, or there was an error.",
 }

@@ -494,7 +494,7 @@ ENDS = [
     (BESIDE, 1.003, "the nearest chair is 1.01 m away. At most 1 m counts."),
     (BESIDE, 0.8, "but a wall or a door hides it"),
     (WRONG, None, "there is no chair on this storey"),
-    (OUT_OF_STEPS | {"failure": "explore"}, 3.0, "used up. The goal was never in sight."),
+    (OUT_OF_STEPS | {"failure": "explore"}, 3.0, "used up. The goal never covered 0.8 % of an image."),
     (
         OUT_OF_STEPS | {"failure": "trapped"}, 3.0,
         "All 9 steps are used up. The robot was trapped: 100 steps within 1 m of one position.",
