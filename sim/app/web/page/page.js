@@ -457,7 +457,7 @@ function runRow(run) {
   }
   const errors = run.errors ? `, ${run.errors} error${run.errors === 1 ? "" : "s"}` : "";
   const agent = [run.agent ?? "?", run.explorer].filter(Boolean).join(", ");
-  return row([...head, [agent, ""], [run.segmentation, ""], [run.split ?? "?", ""], [`${run.found} of ${run.episodes}${errors}`, ""], [run.spl.toFixed(2), "number"]]);
+  return row([...head, [agent, ""], [run.segmentation, ""], [run.split ?? "?", ""], [`${run.found} of ${run.episodes}${errors}`, ""], [run.episodes ? run.spl.toFixed(2) : "", "number"]]);
 }
 
 // A table row of cells, each a text or an element with a class.

@@ -455,6 +455,20 @@ def test_the_form_hides_no_text_and_its_buttons_need_no_row_of_their_own(server:
     assert browser.run(middle.format("start")) == pytest.approx(browser.run(middle.format("agent-note")), abs=5)
 
 
+def test_on_a_phone_no_column_of_the_finished_runs_is_clipped(server: Server, browser: Browser) -> None:
+    browser.visit(server.address)
+    browser.resize(390, 900)
+    try:
+        browser.run("tab('runs')")
+        wait_for(lambda: browser.run("return document.querySelectorAll('#run-list tr').length"))
+        browser.run("document.querySelector('#run-list button').click()")
+        wait_for(lambda: browser.run("return document.querySelectorAll('#episodes tr').length"))
+        clipped = "[...document.querySelectorAll('#runs .scroll')].filter(box => box.scrollWidth > box.clientWidth)"
+        assert browser.run(f"return {clipped}.length") == 0
+    finally:
+        browser.resize(1280, 900)
+
+
 def test_a_run_is_downloaded_and_deleted_with_a_second_click(runs: Path, server: Server, browser: Browser) -> None:
     spare = runs / "spare"
     shutil.copytree(runs / "other", spare)
