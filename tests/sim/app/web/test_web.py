@@ -448,9 +448,14 @@ def test_the_form_hides_no_text_and_its_buttons_need_no_row_of_their_own(server:
     wait_for(lambda: browser.run("return document.getElementById('agent-note').textContent"))
     hidden = "const note = document.getElementById('agent-note'); return note.scrollWidth > note.clientWidth"
     middle = "const box = document.getElementById('{}').getBoundingClientRect(); return (box.top + box.bottom) / 2"
-    for width in (1280, 390):
-        browser.resize(width, 900)
+    caption = "const words = document.getElementById('segmentation-name'); return words.scrollWidth > words.clientWidth"
+    browser.run(
+        "document.body.dataset.step = 0; document.getElementById('segmentation-name').textContent = 'Segments (rednet)'"
+    )
+    for width, height in ((1280, 900), (1200, 789), (390, 900)):
+        browser.resize(width, height)
         assert not browser.run(hidden)
+        assert not browser.run(caption)
     browser.resize(1280, 900)
     assert browser.run(middle.format("start")) == pytest.approx(browser.run(middle.format("agent-note")), abs=5)
 
