@@ -85,7 +85,7 @@ PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
             for name, row in ABLATION.items()
         },
         "stubborn-plus": (
-            "ours: tracks objects, verifies doubtful ones, tours unseen areas, feels along panes",
+            "our agent, which tracks objects, verifies doubtful ones, tours unseen areas and feels along panes",
             PLUS,
         ),
         "single-frame": (
@@ -132,7 +132,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
         },
         "cloned": AgentSpec(
             make=cloned_agent,
-            description="end-to-end: a recurrent policy cloned from demonstrations, without a map",
+            description="a recurrent policy cloned from demonstrations, end to end, without a map",
             config=ClonedConfig(),
             sensors=("depth",),
         ),

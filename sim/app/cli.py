@@ -337,6 +337,13 @@ def _print_any_text() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
+_NO_NUMBER = re.compile(
+    r"Error parsing (?P<option>--\S+): .*"
+    r"(?:invalid literal for int\(\) with base 10|could not convert string to float): (?P<text>'.*')$"
+)
+"""Python's words for a text that is no number, as tyro passes them on, also for an option that may be None."""
+
+
 def _message_in_box(box: str) -> str:
     """Returns the message inside the frame that tyro prints around it, and the names of similar options.
 
@@ -348,4 +355,7 @@ def _message_in_box(box: str) -> str:
     message = " ".join(blocks[0]) or "The command line could not be read. Try --help."
     similar = [line for block in blocks if block[0].startswith("Perhaps you meant") for line in block[1:]]
     names = " or ".join(line.split()[0] for line in similar if line.startswith("--"))
+    if (match := _NO_NUMBER.match(message)) is not None:
+        option, text = match["option"], match["text"]
+        return f"{option} must be a {'whole ' * ('int()' in message)}number, got {text}."
     return f"{message}. Did you mean {names}?" if names else message

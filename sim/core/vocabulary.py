@@ -32,6 +32,15 @@ UNSEEN = frozenset(
 """Names that are asked for in the splits `words-unseen`: no training may use them as labels."""
 _S_ENDINGS = ("ss", "us", "is", "as")
 """Endings of words that are no plurals."""
+_UNCOUNTABLE = ("gym equipment", "seating", "lighting", "shelving", "toilet paper")
+_ONE_OF: Mapping[str, str] = MappingProxyType(
+    {"appliances": "an appliance", "furniture": "a piece of furniture", "objects": "an object", "misc": "an object"}
+)
+"""What one object of a category is called where the name of the category is no name for it."""
+_OPENING = re.compile(r"^(find|go to|look for) ", re.IGNORECASE)
+_ARTICLE = re.compile(r"^(the|an?) ", re.IGNORECASE)
+_AFTER_NOUN = re.compile(r" (?:of|in|inside|from|on|under|below|next to|beside|near|by|at|with) ")
+_VOWEL_SOUND = re.compile(r"[aeio]|u(?!ni|ti|se)|hour", re.IGNORECASE)
 
 
 class Found(NamedTuple):
@@ -100,13 +109,28 @@ def plain(name: str) -> str:
 
 def in_words(goal: str) -> str:
     """Returns the name of a category, "chest of drawers", or a goal in words from its noun phrase on."""
-    return re.sub(r"^((find|go to|look for) )?((the|an?) )?", "", plain(goal).strip(), flags=re.IGNORECASE)
+    return _ARTICLE.sub("", _OPENING.sub("", plain(goal).strip()))
+
+
+def is_plural(goal: str) -> bool:
+    """Returns whether the noun of a category or of a goal in words is plural: "the slippers under the bed"."""
+    noun = _noun(goal)
+    return noun.endswith("s") and not noun.endswith(_S_ENDINGS)
 
 
 def with_article(goal: str) -> str:
-    """Returns a category or a goal in words with its article: "an armchair"."""
-    name = in_words(goal)
-    return name if name in ("clothes", "gym equipment", "seating") else f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+    """Returns a category or a goal in words with its article, if it takes one: "an armchair", "clothes"."""
+    if goal in _ONE_OF:
+        return _ONE_OF[goal]
+    phrase = _OPENING.sub("", plain(goal).strip())
+    if _ARTICLE.match(phrase) or _noun(goal).endswith(_UNCOUNTABLE) or is_plural(goal):
+        return phrase
+    return f"{'an' if _VOWEL_SOUND.match(phrase) else 'a'} {phrase}"
+
+
+def _noun(goal: str) -> str:
+    """Returns the words of a goal before its conditions that follow the noun: "red chair" of "the red chair in ..."."""
+    return _AFTER_NOUN.split(in_words(goal), maxsplit=1)[0]
 
 
 @functools.cache

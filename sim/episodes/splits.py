@@ -35,7 +35,7 @@ from sim.episodes.house_list import HouseList, has_house_list, read_house_list
 from sim.episodes.other_files import read_others
 from sim.episodes.replicates import find_episode
 from sim.houses.house import House
-from sim.houses.load import load_house
+from sim.houses.load import load_house, no_such_house
 from sim.houses.references import add_files
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_path
 
@@ -220,7 +220,7 @@ def split_of_files(
     files, sums = dict[str, Path](), dict[str, str]()
     for path in map(Path, paths):
         if not path.is_file():
-            raise HouseError(f"House '{path}': there is no such file.")
+            raise no_such_house(path)
         if path.stem in files:
             raise ConfigError(f"The houses '{files[path.stem]}' and '{path}' have one name; rename one of them.")
         files[path.stem], sums[path.stem] = path, house_sum(path, root=allowed)

@@ -13,6 +13,7 @@ import numpy as np
 from sim.core.errors import HouseError
 from sim.core.interface import MPCAT40_ID
 from sim.core.invocation import command
+from sim.core.paths import assets_dir
 from sim.core.reading import MAX_BYTES, read_bytes, read_json, reason_of
 from sim.core.store import kept, key_of
 from sim.gl import mujoco
@@ -38,6 +39,17 @@ SIDES = (((0.45, 0.3, -0.85), 0.25), ((-0.6, -0.35, -0.7), 0.12))
 """Direction and strength of two added lights without shadows: the walls of a corner then differ in brightness."""
 
 
+def no_such_house(path: Path) -> HouseError:
+    """Returns the error for a house file that does not exist; it names a shipped house of this name if there is one."""
+    message = f"House '{path}': there is no such file."
+    shipped = (folder / f"{path.stem}.xml" for folder in sorted(assets_dir().iterdir()))
+    file = next((file for file in shipped if file.is_file()), None)
+    if path.parent != Path() or file is None:
+        return HouseError(message)
+    near = file.is_relative_to(Path.cwd())
+    return HouseError(f"{message} The shipped house is '{file.relative_to(Path.cwd()) if near else file}'.")
+
+
 def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None = None) -> House:
     """Returns the house of one MJCF file; paths of textures and meshes are relative to it.
 
@@ -56,7 +68,7 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
     path = Path(path)
     rules = None if labels_path is None else read_rules(Path(labels_path))
     if not path.is_file():
-        raise HouseError(f"House '{path}': there is no such file.")
+        raise no_such_house(path)
     require_root(root)
     made: list[House] = []
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.interface import Action, SuccessRule
-from sim.core.vocabulary import in_words, with_article
+from sim.core.vocabulary import in_words, is_plural, with_article
 from sim.task.failures import (
     LOOP_STEPS,
     STOPPED_AT_GOAL_M,
@@ -41,7 +41,7 @@ _CAUSES: Mapping[str, str] = {
     "missed_detection": "The goal was in sight, but the agent drove on.",
     "trapped": f"The robot was trapped: {TRAPPED}.",
     "loop": "The robot drove in a loop.",
-    "explore": "The goal was never in sight.",
+    "explore": f"The goal never covered {100 * EXPLORED_SHARE:g} % of an image.",
     "stairs": "The goal is on another storey.",
 }
 MEANING: Mapping[str, str] = {
@@ -50,7 +50,7 @@ MEANING: Mapping[str, str] = {
     "missed_detection": "The goal was in view and the agent did not go to it.",
     "loop": f"{LOOP_STEPS} steps on ground where the robot had been before.",
     "trapped": f"{TRAPPED}.",
-    "explore": "The goal never came into view before the steps ran out.",
+    "explore": f"The goal never covered {100 * EXPLORED_SHARE:g} % of an image before the steps ran out.",
     "stairs": "The goal is on another storey, or the robot drove over an edge.",
     "misc": "No other rule applies: the steps ran out on the path to the goal or at the goal, or there was an error.",
 }
@@ -117,7 +117,7 @@ def chain_in_words(goals: Sequence[GoalResult]) -> str:
 
 def _success(result: RolloutResult, goal: str, nearest_m: float | None) -> str:
     shortest_m = result.shortest_path
-    near = "" if nearest_m is None else f": the nearest {in_words(goal)} is {nearest_m:.2f} m away and in sight"
+    near = "" if nearest_m is None else f": {_nearest_of(goal)} {nearest_m:.2f} m away and in sight"
     shortest = "" if shortest_m is None else f" The shortest path is {shortest_m:.1f} m (SPL {result.spl:.2f})."
     return f"The STOP counts{near}. The robot drove {result.path_length:.1f} m.{shortest}"
 
@@ -126,13 +126,14 @@ def _wrong_stop(result: RolloutResult, goal: str, rule: SuccessRule, nearest_m: 
     name = in_words(goal)
     mistaken = detects and result.failure == "false_detection"
     if nearest_m is None:
-        return f"The STOP does not count: there is no {name} on this storey."
+        return f"The STOP does not count: there {_be(goal)} no {name} on this storey."
     if mistaken and (target := _stop_target(result, name)):
         return f"False detection: the agent stopped {target}."
     if nearest_m <= rule.distance_m:
-        return f"The STOP does not count: the nearest {name} is {nearest_m:.2f} m away, but a wall or a door hides it."
+        hidden = f"but a wall or a door hides {'them' if is_plural(goal) else 'it'}"
+        return f"The STOP does not count: {_nearest_of(goal)} {nearest_m:.2f} m away, {hidden}."
     up_m = math.ceil(round(nearest_m * 100, 6)) / 100  # 1.003 m is farther than 1 m
-    far = f"the nearest {name} is {up_m:.2f} m away"
+    far = f"{_nearest_of(goal)} {up_m:.2f} m away"
     if mistaken:
         return f"False detection: the agent took another object for the {name}; {far}."
     return f"The STOP came too early: {far}. At most {rule.distance_m:g} m counts."
@@ -186,7 +187,7 @@ def marks(result: EpisodeResult, trajectory: Trajectory) -> list[Mark]:
     moments: list[Mark] = []
     seen, at_goal = _seen(trajectory), _at_goal(trajectory)
     if len(seen):
-        moments.append(Mark("seen", int(seen[0]), None, f"{goal} first in view ({len(seen)} frames in all)"))
+        moments.append(Mark("seen", int(seen[0]), None, f"{goal} first in view ({_frames(len(seen))} in all)"))
     if len(at_goal) and not trajectory.success:
         moments.append(Mark("at_goal", int(at_goal[0]), None, "the robot is where a STOP would succeed"))
     elif not trajectory.success and (nearest := _nearest(trajectory)) is not None:
@@ -211,7 +212,7 @@ def _found(result: EpisodeResult, trajectory: Trajectory) -> str:
 def _false_detection(result: EpisodeResult, trajectory: Trajectory) -> str:
     goal = in_words(result.goal)
     target = _stop_target(result, goal)
-    place = f" {target}" if target else f": {_distance_to_instance(goal, trajectory)}"
+    place = f" {target}" if target else f": {_distance_to_instance(result.goal, trajectory)}"
     return f"Called STOP at step {trajectory.num_steps}{place}. {_view(result, trajectory)}"
 
 
@@ -246,12 +247,12 @@ def _explore(result: EpisodeResult, trajectory: Trajectory) -> str:
 def _stairs(result: EpisodeResult, trajectory: Trajectory) -> str:
     if trajectory.end_reason == "fallen":
         return f"The robot drove over an edge at step {trajectory.num_steps} and fell. {_view(result, trajectory)}"
-    return f"No {in_words(result.goal)} is on the storey where the episode starts."
+    return f"No {in_words(result.goal)} {_be(result.goal)} on the storey where the episode starts."
 
 
 def _other_reason(result: EpisodeResult, trajectory: Trajectory) -> str:
     if trajectory.end_reason == "stop":
-        distance = _distance_to_instance(in_words(result.goal), trajectory)
+        distance = _distance_to_instance(result.goal, trajectory)
         seen = _view(result, trajectory) if len(_seen(trajectory)) else ""
         return f"Called STOP at step {trajectory.num_steps} short of the goal: {distance}. {seen}"
     at_goal = "It ended where a STOP counts, and STOP was not called. " if result.distance_to_goal == 0.0 else ""
@@ -275,7 +276,12 @@ def _view(result: EpisodeResult, trajectory: Trajectory) -> str:
     seen = _seen(trajectory)
     if not len(seen):
         return f"{_never_seen(result)}."
-    return f"The {in_words(result.goal)} was in view from step {seen[0]} on, in {len(seen)} frames."
+    was = "were" if is_plural(result.goal) else "was"
+    return f"The {in_words(result.goal)} {was} in view from step {seen[0]} on, in {_frames(len(seen))}."
+
+
+def _frames(number: int) -> str:
+    return f"{number} frame" + "s" * (number != 1)
 
 
 def _never_seen(result: EpisodeResult) -> str:
@@ -289,9 +295,18 @@ def _driven(trajectory: Trajectory) -> str:
 def _distance_to_instance(goal: str, trajectory: Trajectory) -> str:
     nearest_m = trajectory.nearest_instance_m
     if nearest_m is None:
-        return f"no {goal} is on this storey"
+        return f"no {in_words(goal)} {_be(goal)} on this storey"
     too_far = trajectory.stop.stop_target_xy_m is None and nearest_m > STOPPED_AT_GOAL_M
-    return f"the nearest {goal} is {nearest_m:.1f} m away{', too far for a stop at it' if too_far else ''}"
+    return f"{_nearest_of(goal)} {nearest_m:.1f} m away{', too far for a stop there' if too_far else ''}"
+
+
+def _nearest_of(goal: str) -> str:
+    """Returns the beginning of a sentence: "the nearest chair is", "the nearest clothes are"."""
+    return f"the nearest {in_words(goal)} {_be(goal)}"
+
+
+def _be(goal: str) -> str:
+    return "are" if is_plural(goal) else "is"
 
 
 def _stop_target(result: RolloutResult, goal: str) -> str:

@@ -83,7 +83,8 @@ def _household(rooms: Sequence[Room], standing: Sequence[Standing]) -> list[str]
     seats = max((len(_chairs_at(item, standing)) for item in standing if _is_for_meals(item)), default=0)
     needed = min(bedrooms + 1, MAX_SEATS_NEEDED)
     if seats < needed:
-        sentences.append(f"the home has {seats} seats at its largest dining table instead of at least {needed}")
+        words = f"{seats} seat" + "s" * (seats != 1)
+        sentences.append(f"the home has {words} at its largest dining table instead of at least {needed}")
     places = sum(2 if _width_m(item) >= DOUBLE_BED_M else 1 for item in standing if item.category == "bed")
     toilets = sum(item.category == "toilet" for item in standing)
     if places >= SECOND_TOILET_FROM and toilets == 1:

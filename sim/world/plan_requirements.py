@@ -238,7 +238,8 @@ def _number_faults(count: Counter[str], area_m2: float) -> list[str]:
     beds = max(count["bedroom"], count["studio"])
     least = max((number for from_m2, number in BEDROOMS_FROM_M2 if area_m2 >= from_m2), default=0)
     if 0 < beds < least:
-        faults.append(f"the home of {area_m2:.0f} m2 has {beds} bedrooms instead of at least {least}")
+        bedrooms = f"{beds} bedroom" + "s" * (beds != 1)
+        faults.append(f"the home of {area_m2:.0f} m2 has {bedrooms} instead of at least {least}")
     faults += [
         f"the home has {count[kind]} rooms of the kind {kind} for {beds} bedrooms"
         for kind, more in MORE_THAN_BEDROOMS.items()

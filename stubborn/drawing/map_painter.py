@@ -123,12 +123,13 @@ def describe_intention(agent: StubbornAgent) -> str:
     if agent.last_action is None:
         return "about to start"
     if agent.last_action is Action.STOP:
-        return "stops: the target is in reach"
+        return "stops, because the target is in reach"
     if agent.approach is not None:
         return "looks at a candidate" if agent.approach.route is None else "goes to a candidate"
     if agent.route is None:
-        return "gets unstuck or looks around"
-    return "explores: to the next place" if agent.route.goal.marker_xy_m is None else "explores: to a corner"
+        stuck = agent.untrap.active or agent.last_action is Action.MOVE_FORWARD  # forward: the map shows no path
+        return "gets unstuck" if stuck else "looks around"
+    return "explores the next place" if agent.route.goal.marker_xy_m is None else "explores towards a corner"
 
 
 def trace_xy_m(route: Route, pose: Pose) -> NDArray[np.float64]:

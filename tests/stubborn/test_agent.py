@@ -202,4 +202,14 @@ def test_the_untrap_mode_turns_to_one_side_until_no_drop_is_ahead(side: Action):
             agent.navmap.seen_drop[:] = False
         actions.append(agent.act(world.observe("chair")))
         world.step(actions[-1])
+        assert map_painter.describe_intention(agent) == "gets unstuck"
     assert actions == [side] * 5 + [Action.MOVE_FORWARD]
+
+
+def test_a_turn_for_a_better_view_is_not_described_as_getting_unstuck():
+    agent = agents.make("stubborn-plus", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    assert isinstance(agent, StubbornAgent)
+    world = GridWorld([Box((4.0, 4.2), (-4.0, 4.0))], (0.0, 0.0, 0.0), camera=SMALL_CAMERA)
+    agent.reset("chair", 0)
+    assert agent.act(world.observe("chair")) in (Action.TURN_LEFT, Action.TURN_RIGHT)
+    assert map_painter.describe_intention(agent) == "looks around"

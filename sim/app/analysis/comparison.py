@@ -87,7 +87,7 @@ def compare(first: Run, second: Run) -> ResultTable:
     changed = [i for i in common if first.results[i].success != second.results[i].success]
     notes = [
         f"A: {first.path}, B: {second.path}; {counted(episodes, 'episode')} of both runs.",
-        f"not significant: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
+        f"not significant: the interval contains 0, or there are fewer than {MIN_PAIRS} pairs.",
     ]
     errors = [sum(result.is_error for result in results) for results in (a, b)]
     if any(errors):
@@ -108,7 +108,7 @@ def compare(first: Run, second: Run) -> ResultTable:
         chains = any(result.goals is not None for result in a)
         for name, won in (("A", lost), ("B", gained)):
             start = f"{name} reaches more goals in" if chains else f"Only {name} succeeds in"
-            notes.append(f"{start} {len(won)}: {' '.join(won) or '-'}.")
+            notes.append(f"{start} {counted(len(won), 'episode')}: {' '.join(won)}." if won else f"{start} no episode.")
     title = f"B - A, paired over {episodes} episodes"
     return ResultTable("comparison", title, ("metric", "A", "B", "B - A"), rows, notes)
 

@@ -14,7 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from sim.app.analysis.display import describe
 from sim.app.evaluation.watch import Steps
-from sim.core.vocabulary import plain
+from sim.core.vocabulary import with_article
 from sim.episodes.episode import Episode
 from sim.task.result import EpisodeResult
 
@@ -63,7 +63,7 @@ class ProgressReport:
         """Reports that an episode begins; `steps` returns its number of steps so far."""
         with self._lock:
             self._running[episode.episode_id] = _Running(steps, time.monotonic())
-            goal = f"the picture of {episode.goal}" if episode.in_picture else plain(episode.goal)
+            goal = f"the picture of {episode.goal}" if episode.in_picture else with_article(episode.goal)
             self._print(f"{episode.episode_id} begins: looking for {goal} in house {episode.house}")
 
     def over(self, results: Iterable[EpisodeResult]) -> Iterator[EpisodeResult]:

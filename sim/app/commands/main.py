@@ -114,6 +114,8 @@ def entry(argv: Sequence[str] | None = None) -> int:
     is_word = bool(rest) and not rest[0].startswith("-")
     if name in COMMANDS and not (name in _groups() and is_word and not COMMANDS[name].takes_words):
         return _run(name, rest)
+    if words[:1] == ["help"]:
+        return entry([*words[1:], "--help"])
     if not words or words[0] in ("-h", "--help"):
         print(_text_of_list())
         return 0

@@ -11,6 +11,7 @@ from sim.app.options import RunOptions
 from sim.core.errors import ConfigError, did_you_mean
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES
+from sim.core.vocabulary import vocabulary
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
@@ -165,9 +166,12 @@ def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:
     goals = list(dict.fromkeys(episode.goal for episode in split.episodes))
     goals.sort(key=lambda goal: GOAL_CATEGORIES.index(goal) if goal in GOAL_CATEGORIES else len(GOAL_CATEGORIES))
     if options.goal is not None and options.goal not in goals:
+        word = vocabulary().find(options.goal)
+        category = "" if word is None else vocabulary().main_category(word.names)
+        hint = f" Did you mean '{category}'?" if category in goals else did_you_mean(options.goal, goals)
         raise ConfigError(
-            f"--goal '{options.goal}': split '{split.name}' has no such episode.{did_you_mean(options.goal, goals)}"
-            f" It has: {', '.join(goals)}."
+            f"--goal '{options.goal}': split '{split.name}' has no such episode.{hint} It has: {', '.join(goals)}."
+            " Other words need a house (--house)."
         )
     episodes = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
     if options.episodes > len(episodes):

@@ -227,10 +227,10 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
             description=own.description or semantics, spec=own.spec, config=own.config, make=make, own=own
         )
     else:
+        known = ", ".join(f"{name} ({kind.description})" for name, kind in KINDS.items())
         raise ConfigError(
             f"Unknown --semantics '{semantics}'.{did_you_mean(semantics, KINDS)}"
-            f" Available: {', '.join(KINDS)}, the address of a server (http://HOST:PORT), or your own as "
-            "package.module:NAME."
+            f" Available: {known}, the address of a server (http://HOST:PORT), or your own as package.module:NAME."
         )
     if weights is not None and not isinstance(kind.config, NetworkConfig):
         fields = "; options of your own are --config detector.FIELD=VALUE" if kind.own else ""

@@ -91,13 +91,15 @@ class ChaseView:
         scene: world of the house.
         width_px: width of the pictures.
         height_px: height of the pictures.
+        finer: a picture is rendered this many times wider and higher, and reduced, so that edges are smooth.
 
     Raises:
         RenderError: there is no OpenGL context.
     """
 
-    def __init__(self, scene: Scene, *, width_px: int = 400, height_px: int = 250) -> None:
+    def __init__(self, scene: Scene, *, width_px: int = 400, height_px: int = 250, finer: int = 1) -> None:
         model = scene.world.model
+        self._finer, width_px, height_px = finer, finer * width_px, finer * height_px
         self._world = scene.world
         self._size = CameraModel(width_px=width_px, height_px=height_px, hfov_rad=HFOV_RAD)
         self._rect = mujoco.MjrRect(0, 0, width_px, height_px)
@@ -137,14 +139,15 @@ class ChaseView:
         self._lamps.switch_on(lamps)
         self._fill(shown, eye)
         self._lamps.restore()
-        self._mark_front(pose)
+        self._mark_front()
         picture, inverse = self._drawn(eye)
         cut = self._cut(shown, eye)
         if cut.size:
             self._fill_sections(picture, inverse, cut, eye)
         if hidden.size:
             self._tint(picture, inverse, hidden, eye)
-        return picture
+        height_px, width_px = (side // self._finer for side in picture.shape[:2])
+        return cv2.resize(picture, (width_px, height_px), interpolation=cv2.INTER_AREA).astype(np.uint8, copy=False)
 
     def close(self) -> None:
         """Frees the renderer."""
@@ -214,7 +217,7 @@ class ChaseView:
         picture[mask] = ((1.0 - _TINT) * picture[mask] + _TINT * tint).astype(np.uint8)
         outlines, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
         cv2.drawContours(
-            picture, [outline for outline in outlines if cv2.contourArea(outline) > _SPECK_PX], -1, HIDDEN, 1
+            picture, [outline for outline in outlines if cv2.contourArea(outline) > _SPECK_PX], -1, HIDDEN, self._finer
         )
 
     def _drawn(self, eye: _Eye) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
@@ -233,27 +236,30 @@ class ChaseView:
         picture[raw[::-1] <= 0.0] = OUTSIDE
         return picture, eye.inverse(self._depth)
 
-    def _mark_front(self, pose: Pose) -> None:
-        """Adds an arrow, and a band with a lens to the default robot, which show where the robot's front is."""
-        robot = self._world.robot
-        forward = np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), 0.0])
-        top_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + robot.height_m])
-        band_m = top_m - np.array([0.0, 0.0, 2.2 * _BAND_M])
+    def _mark_front(self) -> None:
+        """Adds an arrow, and a band with a lens to the default robot, which show where the robot's front is.
+
+        They lean with the body.
+        """
+        robot, body = self._world.robot, self._world.body_pose
+        forward, _, up = body.axes
+        top_m = body.point(0.0, 0.0, robot.height_m)
+        band_m = top_m - 2.2 * _BAND_M * up
         lens_m, reach = band_m + robot.radius_m * forward, 0.8 * robot.radius_m * forward
         if self._world.config.file is None:
             self._add(mujoco.mjtGeom.mjGEOM_CYLINDER, (robot.radius_m + 0.003, _BAND_M, 0.0), band_m, _DARK)
             self._add(mujoco.mjtGeom.mjGEOM_SPHERE, (_LENS_M, 0.0, 0.0), lens_m, _LENS)
-        lid_m = top_m + np.array([0.0, 0.0, 0.03])
+        lid_m = top_m + 0.03 * up
         arrow = self._add(mujoco.mjtGeom.mjGEOM_ARROW, (0.01, 0.01, 0.01), lid_m, _ARROW)
         mujoco.mjv_connector(arrow, mujoco.mjtGeom.mjGEOM_ARROW, 0.022, lid_m - reach, lid_m + reach)
 
     def _add(
         self, kind: mujoco.mjtGeom, size: tuple[float, float, float], at_m: NDArray, rgba: tuple[float, ...]
     ) -> mujoco.MjvGeom:
-        """Adds a geom to the filled scene that is not in the world, and returns it."""
-        scene = self._scene.scene
+        """Adds a geom to the filled scene that is not in the world, upright in the robot's frame, and returns it."""
+        scene, turned = self._scene.scene, self._world.body_pose.axes.T.ravel()
         geom = scene.geoms[scene.ngeom]
-        mujoco.mjv_initGeom(geom, kind, np.array(size), at_m, np.eye(3).ravel(), np.array(rgba, np.float32))
+        mujoco.mjv_initGeom(geom, kind, np.array(size), at_m, turned, np.array(rgba, np.float32))
         scene.ngeom += 1
         return geom
 

@@ -21,6 +21,8 @@ ARROW_M = 0.35
 TEXT = 0.45
 """Font scale of the names of goals."""
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
+_AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
+"""Pixels by which text is moved for its outline."""
 
 
 def draw_episode_map(task: Task, episodes: Sequence[Episode]) -> Picture:
@@ -37,7 +39,7 @@ def draw_episode_map(task: Task, episodes: Sequence[Episode]) -> Picture:
     picture = np.full((TITLE_PX + HEIGHT_PX, sum(tile.shape[1] for tile in tiles), 3), 255, np.uint8)
     picture[TITLE_PX:] = np.hstack(tiles)
     count = f"{len(episodes)} episode" + ("" if len(episodes) == 1 else "s")
-    colours = "starts and headings blue, goals green, obstacles dark grey, too narrow light grey"
+    colours = "starts and headings blue, goals green, obstacles dark grey, too narrow or outside beige"
     text = f"{episodes[0].house}: {count}; {colours}"
     size = min(0.5, 0.5 * (picture.shape[1] - 2 * MARGIN_PX) / cv2.getTextSize(text, _FONT, 0.5, 1)[0][0])
     cv2.putText(picture, text, (MARGIN_PX, 20), _FONT, size, ROBOT, 1, cv2.LINE_AA)
@@ -100,6 +102,7 @@ def _write(picture: Picture, text: str, middle: NDArray[np.int32], taken: list[t
         box = (left_px - 2, base - height - 2, left_px + width + 2, base + 2)
         if not any(box[0] < t[2] and t[0] < box[2] and box[1] < t[3] and t[1] < box[3] for t in taken):
             taken.append(box)
-            cv2.putText(picture, text, (left_px, base), _FONT, TEXT, FREE, 3, cv2.LINE_AA)
+            for dx, dy in _AROUND:  # the same glyphs: those of thicker text are wider
+                cv2.putText(picture, text, (left_px + dx, base + dy), _FONT, TEXT, FREE, 1, cv2.LINE_AA)
             cv2.putText(picture, text, (left_px, base), _FONT, TEXT, ROBOT, 1, cv2.LINE_AA)
             return

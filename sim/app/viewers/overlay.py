@@ -149,7 +149,7 @@ class FrameComposer:
         write(frame, f"Looking for {asked}", (14, 28), 560, 24, WHITE, BOLD)
         for box, title in (
             (_CAMERA, "camera of the robot"),
-            (_CHASE, "third person"),
+            (_CHASE, "third person (blue: obstacles that no camera shows)"),
             *((self._segment_box(name), captions[name]) for name in self._segments),
             ((self._plan_left, _MAPS_TOP, *self.plan_px), "plan (true)"),
         ):

@@ -165,7 +165,7 @@ class VideoRecorder:
         if env.scene is not self._scene:
             self._free_chase()
             width, height = overlay.CHASE_PX
-            self._scene, self._chase = env.scene, ChaseView(env.scene, width_px=width, height_px=height)
+            self._scene, self._chase = env.scene, ChaseView(env.scene, width_px=width, height_px=height, finer=2)
         self._env, self._frame, self._plan = env, None, TopView(env, heading_up=self._painter is not None)
         self._composer = self._composer_for(env.scene.task.goal)
         file = video_file(self._run, env.episode.episode_id)

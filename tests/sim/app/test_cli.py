@@ -45,6 +45,20 @@ class Optional:
     """A number."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Numbers:
+    """Options that are numbers."""
+
+    whole: int = 5
+    """A whole number."""
+    share: float = 0.5
+    """A number."""
+    limit: float | None = None
+    """A number, or none."""
+    most: int | None = None
+    """A whole number, or none."""
+
+
 def test_the_help_of_an_option_shows_no_empty_default(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         cli.parse(Optional, ["--help"])
@@ -81,6 +95,22 @@ def test_a_command_line_that_cannot_be_read_is_one_line(
     assert message.count("\n") == 1
     assert named in message
     assert "│" not in message
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--whole", "five"], "--whole must be a whole number, got 'five'."),
+        (["--share", "half"], "--share must be a number, got 'half'."),
+        (["--limit", "soon"], "--limit must be a number, got 'soon'."),
+        (["--most", "all"], "--most must be a whole number, got 'all'."),
+    ],
+)
+def test_a_text_in_place_of_a_number_is_named(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.run(Numbers, lambda args: 0, words) == 2
+    assert capsys.readouterr().err == f"error: {message}\n"
 
 
 def test_an_unknown_option_is_answered_with_the_similar_one_alone(

@@ -100,6 +100,12 @@ def test_a_file_that_is_not_mjcf_is_refused_in_one_line(tmp_path, content):
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.parametrize("name", ["val_02", "val_02.xml"])
+def test_the_name_of_a_shipped_house_is_answered_with_its_file(name):
+    with pytest.raises(HouseError, match=r"there is no such file\. The shipped house is '.*val/val_02\.xml'"):
+        load_house(Path(name))
+
+
 def test_a_missing_file_is_reported(tmp_path):
     with pytest.raises(HouseError, match=r"nowhere\.xml.*no"):
         load_house(tmp_path / "nowhere.xml")

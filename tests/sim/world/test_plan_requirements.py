@@ -91,7 +91,7 @@ def test_a_second_laundry_and_too_few_bedrooms_are_reported() -> None:
     assert "2 rooms of the kind laundry instead of at most 1" in fault
     large: dict[str, Rect | None] = {"dining_room_00": (10.0, 0.0, 15.0, 5.0), "bedroom_01": None}
     (fault,) = faults(large | {"living_room_01": (10.0, 6.0, 17.0, 12.0)}, {"bedroom_01": None})
-    assert "has 1 bedrooms instead of at least 2" in fault
+    assert "has 1 bedroom instead of at least 2" in fault
 
 
 @pytest.mark.parametrize(

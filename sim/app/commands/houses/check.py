@@ -106,7 +106,7 @@ def main(args: Args) -> int:
         cli.require_unset(args, of_new, "is for new houses: leave out --split and --house.")
     for checked in _checked(args):
         results.append(checked)
-        tries = f", {checked.tries} tries" if fresh else ""
+        tries = f", {checked.tries} {'try' if checked.tries == 1 else 'tries'}" if fresh else ""
         faults = display.counted(len(checked.faults), "fault")
         print(f"{checked.name}: {faults}{tries}, {checked.seconds:.2f} s", flush=True)
         for kind, sentences in (("note", checked.notes), ("rejected", checked.rejects), ("fault", checked.faults)):

@@ -270,8 +270,10 @@ def _print_summary(made: list[Made], took_s: float) -> None:
     good = [house for house in made if house.text]
     if good:
         seconds = [house.seconds for house in good]
+        rejected = sum(len(house.rejects) for house in good)
         print(
             f"{display.counted(len(good), 'house')}, median {statistics.median(seconds):.2f} s each on one core, "
             f"{len(good) / sum(seconds):.2f} houses/s of one core, {len(good) / took_s:.2f} houses/s in total; "
-            f"{sum(len(house.rejects) for house in good)} tries rejected, {len(made) - len(good)} seeds without a house"
+            f"{rejected} {'try' if rejected == 1 else 'tries'} rejected, "
+            f"{display.counted(len(made) - len(good), 'seed')} without a house"
         )

@@ -348,5 +348,5 @@ def _summary(notes: Sequence[ShardNote]) -> str:
     houses = len({note.house for note in notes})
     return (
         f"{display.counted(views, 'view')} of {display.counted(houses, 'house')} in "
-        f"{display.counted(len(notes), 'shard')}, {size_bytes >> 20} MB; of the processes' time: {share}."
+        f"{display.counted(len(notes), 'shard')}, {display.file_size(size_bytes)}; of the processes' time: {share}."
     )

@@ -219,9 +219,9 @@ function fill(parent, children) {
 
 // --- choosing an episode --------------------------------------------------------------------------------------------
 
-function options(select, values, wanted, empty = "its own") {
+function options(select, values, wanted, empty = "its own", words = shortened) {
   const before = wanted ?? select.value;
-  fill(select, values.map((value) => new Option(plain(shortened(value)) || empty, value)));
+  fill(select, values.map((value) => new Option(words(value) || empty, value)));
   if (values.includes(before)) select.value = before;
 }
 
@@ -263,7 +263,7 @@ function showAbove() {
 function proposeWishes(split, house) {
   const texts = split === "val" ? Object.keys(choices.splits.descriptions?.[house] ?? {}) : [];
   fill($("wishes"), texts.map((text) => new Option(text)));
-  $("wish").placeholder = texts[0] ?? "the wooden chair";
+  $("wish").placeholder = [...texts].sort((a, b) => a.length - b.length)[0] ?? "the wooden chair";
 }
 
 async function showHouse() {
@@ -271,7 +271,7 @@ async function showHouse() {
   proposeWishes(asked.split, asked.house);
   $("place").value = "";
   above = null;
-  $("above-words").textContent = `Drawing ${plain(asked.house)} ...`;
+  $("above-words").textContent = `Drawing ${asked.house} ...`;
   const answer = await fetch(`api/house?${new URLSearchParams(asked)}`);
   if ($("split").value !== asked.split || $("house").value !== asked.house) return;  // another one was chosen since
   $("above").classList.toggle("missing", !answer.ok);
@@ -298,7 +298,7 @@ function drawHouse() {
   canvas.width = above.picture.width;
   canvas.height = above.picture.height;
   pen.drawImage(above.picture, 0, 0);
-  $("above-words").textContent = `${plain($("house").value)} from above. ` + (place ? "Start: the arrow." : "Press to choose a start, drag to turn it.");
+  $("above-words").textContent = `${shortened($("house").value)} from above. ` + (place ? "Start: the arrow." : "Press to choose a start, drag to turn it.");
   if (!place) return;
   const x = (place[0] - above.middle_m[0]) / above.m_per_px + canvas.width / 2;
   const y = canvas.height / 2 - (place[1] - above.middle_m[1]) / above.m_per_px;
@@ -339,7 +339,7 @@ function aim(event) {
   drawHouse();
 }
 
-const goalOptions = (wanted) => options($("goal"), Object.keys(goalsNow()), wanted, "no goal");
+const goalOptions = (wanted) => options($("goal"), Object.keys(goalsNow()), wanted, "no goal", plain);
 
 // Removes the chosen episode if it is of another house or goal. An agent needs a goal.
 function chosenGoal() {
@@ -457,7 +457,7 @@ function runRow(run) {
   }
   const errors = run.errors ? `, ${run.errors} error${run.errors === 1 ? "" : "s"}` : "";
   const agent = [run.agent ?? "?", run.explorer].filter(Boolean).join(", ");
-  return row([...head, [agent, ""], [run.segmentation, ""], [run.split ?? "?", ""], [`${run.found} of ${run.episodes}${errors}`, ""], [run.spl.toFixed(2), "number"]]);
+  return row([...head, [agent, ""], [run.segmentation, ""], [run.split ?? "?", ""], [`${run.found} of ${run.episodes}${errors}`, ""], [run.episodes ? run.spl.toFixed(2) : "", "number"]]);
 }
 
 // A table row of cells, each a text or an element with a class.

@@ -145,8 +145,8 @@ def test_chains_are_the_same_although_the_robot_was_elsewhere_when_a_goal_began(
         runs.append(replace(run, results={i: changed(line, goals=(a_goal(),)) for i, line in run.results.items()}))
     assert require_same_episodes(*runs) == ["a", "b"]
     notes = compare(*runs).notes
-    assert "A reaches more goals in 0: -." in notes
-    assert "B reaches more goals in 2: a b." in notes
+    assert "A reaches more goals in no episode." in notes
+    assert "B reaches more goals in 2 episodes: a b." in notes
 
 
 def test_a_folder_that_is_not_a_run_is_reported(tmp_path: Path) -> None:

@@ -59,7 +59,7 @@ def test_a_pipe_gets_a_line_when_an_episode_begins_while_it_runs_and_when_it_end
 
     assert list(progress.over(lines())) == [RESULT]
     first, *running, last = stream.getvalue().splitlines()
-    assert first == "e0 begins: looking for television in house val_00"
+    assert first == "e0 begins: looking for a television in house val_00"
     assert running
     pace = r"\d+\.\d steps/s, at most \d+ (s|min) left"
     assert all(re.fullmatch(rf"\[0/1\] running: e0, step \d+ of 500(; {pace})?", line) for line in running)

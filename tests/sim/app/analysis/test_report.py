@@ -417,6 +417,17 @@ def test_a_missed_goal_was_in_view_before(pair: tuple[Path, Path]) -> None:
     assert [mark.step for mark in marks(result, missed)] == [5, 8, missed.num_steps]
 
 
+def test_one_frame_and_a_plural_goal_are_worded_with_their_number(pair: tuple[Path, Path]) -> None:
+    _, folder = pair
+    result = changed(_first(folder), failure="missed_detection", goal="clothes")
+    trajectory = read_trajectory(trajectory_file(folder, result.episode_id))
+    share = np.zeros_like(trajectory.goal_share)
+    share[5] = 0.1
+    once = Trajectory(**{**vars(trajectory), "goal_share": share})
+    assert explain(result, once).startswith("The clothes were in view from step 5 on, in 1 frame.")
+    assert marks(result, once)[0].words == "clothes first in view (1 frame in all)"
+
+
 def test_a_single_pair_has_no_interval(pair: tuple[Path, Path]) -> None:
     for folder in pair:
         _write_lines(folder, _lines(folder)[:1])
@@ -569,6 +580,15 @@ def test_nothing_runs_out_of_a_narrow_window(browser: Browser, pair: tuple[Path,
         assert browser.run("return document.documentElement.scrollWidth") <= width
         edges = "return [...document.querySelectorAll('.detail .plan')].map(p => p.getBoundingClientRect().right)"
         assert max(browser.run(edges)) <= width
+
+
+def test_no_cause_of_a_failure_is_clipped_on_a_phone(browser: Browser, pair: tuple[Path, Path]) -> None:
+    failed = [line | {"success": 0.0, "failure": "missed_detection"} for line in _lines(pair[1])]
+    _write_lines(pair[1], failed)
+    _open(browser, pair[1])
+    browser.resize(390, 800)
+    clipped = "return [...document.querySelectorAll('.scroll')].filter(box => box.scrollWidth > box.clientWidth).length"
+    assert browser.run(clipped) == 0
 
 
 OVERFLOW = """

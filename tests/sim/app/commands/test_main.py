@@ -67,7 +67,7 @@ def test_help_of_a_command_has_its_name_and_says_what_it_does(name: str, capsys:
     assert "(default: True)" not in shown  # `--no-NAME` is the option, so that its text would contradict it
 
 
-@pytest.mark.parametrize("words", [[], ["--help"], ["-h"]])
+@pytest.mark.parametrize("words", [[], ["--help"], ["-h"], ["help"]])
 def test_the_list_has_one_line_for_each_command(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert entry(words) == 0
     lines = capsys.readouterr().out.splitlines()

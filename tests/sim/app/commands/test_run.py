@@ -386,6 +386,8 @@ def test_a_goal_that_the_split_does_not_have_is_answered_with_those_it_has(capsy
     assert "--goal 'toilett'" in message
     assert "Did you mean 'toilet'? It has: chair, table," in message
     assert "--episodes" not in message
+    assert entry(["--goal", "couch"]) == 2
+    assert "Did you mean 'sofa'?" in capsys.readouterr().err
     assert entry(["--goal", "toilet", "--episodes", "9999"]) == 2
     message = capsys.readouterr().err
     assert re.search(r"Split 'val' has \d+ episodes with goal 'toilet', and 9999 were asked for", message)

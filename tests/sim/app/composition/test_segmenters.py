@@ -75,5 +75,5 @@ def test_weights_that_are_not_there_and_weights_without_rednet_are_refused(tmp_p
         resolve(RunOptions(semantics="rednet", weights=tmp_path / "none.safetensors"))
     with pytest.raises(ConfigError, match=r"--weights.*--semantics.*'gt'"):
         resolve(RunOptions(semantics="gt", weights=tmp_path / "none.safetensors"))
-    with pytest.raises(ConfigError, match="Unknown --semantics 'dreams'"):
+    with pytest.raises(ConfigError, match=r"Unknown --semantics 'dreams'.*gt \(ground truth\)"):
         resolve(RunOptions(semantics="dreams"))

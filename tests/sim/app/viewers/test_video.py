@@ -208,7 +208,7 @@ INFO = {"collided": True, "distance_to_goal": 123.4, "collisions": 499, "path_le
 
 @pytest.mark.parametrize("goal", ["bed", "chest_of_drawers", "gym_equipment"])
 def test_no_text_leaves_the_frame_or_lies_on_another(goal: str, written: list[tuple[str, Box]]) -> None:
-    state = "gets unstuck or looks around, and says so in a sentence that nobody has shortened for the video"
+    state = "goes to a candidate, and says so in a sentence that nobody has shortened for the video"
     panel = overlay.MapPanel(image=PLAN, words=state)
     composer = overlay.FrameComposer(
         goal,
@@ -370,6 +370,33 @@ def test_the_robot_stands_in_the_middle_of_the_chase_view_and_a_wall_behind_it_d
     assert before_a_wall > 0.4  # without the cut, the wall at x = -3 m would cover it
 
 
+def test_the_arrow_on_the_robot_leans_with_its_body(env: ObjectNavEnv, monkeypatch: pytest.MonkeyPatch) -> None:
+    env.reset(options={"episode": replace(EPISODE, start=Pose(0.0, 0.0, 0.0))})
+    view, world = ChaseView(env.scene, width_px=200, height_px=120), env.scene.world
+
+    def row_of_arrow(pitch_rad: float) -> float:
+        leaning = replace(upright, pitch_rad=pitch_rad)
+        monkeypatch.setattr(type(world), "body_pose", property(lambda _: leaning))
+        picture = view.render().astype(int)
+        return float(np.nonzero(picture[..., 2] > 2 * picture[..., 0] + 10)[0].mean())
+
+    upright = world.body_pose
+    assert row_of_arrow(0.2) < row_of_arrow(0.0) < row_of_arrow(-0.2)
+    view.close()
+
+
+def test_a_finer_chase_view_has_the_same_size_and_smoother_edges(env: ObjectNavEnv) -> None:
+    env.reset(options={"episode": replace(EPISODE, start=Pose(0.0, 0.0, 0.3))})
+    rough, fine = (ChaseView(env.scene, width_px=200, height_px=120, finer=finer) for finer in (1, 2))
+    pictures = [view.render().astype(int) for view in (rough, fine)]
+    rough.close()
+    fine.close()
+    steps = [np.abs(np.diff(picture, axis=1)).max(axis=-1) for picture in pictures]
+    assert pictures[0].shape == pictures[1].shape == (120, 200, 3)
+    assert np.abs(pictures[0] - pictures[1]).mean() < 10
+    assert np.quantile(steps[1], 0.99) < np.quantile(steps[0], 0.99)
+
+
 def test_an_observed_image_is_shown_and_the_true_one_if_it_was_not_observed() -> None:
     truth = {"rgb": np.zeros((2, 2, 3), np.uint8), "depth": np.ones((2, 2), np.float32)}
     noisy = np.full((2, 2), 2.0, np.float32)
@@ -467,7 +494,7 @@ ENDS = [
     (BESIDE, 1.003, "the nearest chair is 1.01 m away. At most 1 m counts."),
     (BESIDE, 0.8, "but a wall or a door hides it"),
     (WRONG, None, "there is no chair on this storey"),
-    (OUT_OF_STEPS | {"failure": "explore"}, 3.0, "used up. The goal was never in sight."),
+    (OUT_OF_STEPS | {"failure": "explore"}, 3.0, "used up. The goal never covered 0.8 % of an image."),
     (
         OUT_OF_STEPS | {"failure": "trapped"}, 3.0,
         "All 9 steps are used up. The robot was trapped: 100 steps within 1 m of one position.",
@@ -489,6 +516,26 @@ def test_the_explanation_of_the_end_names_its_cause(line: dict, nearest_m: float
     outcome = explain_end(whole, "chair", SuccessRule(), nearest_m, detects=detects)
     assert expected in outcome.sentence
     assert outcome.found == bool(whole.success)
+
+
+@pytest.mark.parametrize(
+    ("line", "nearest_m", "expected"),
+    [
+        ({"success": 1.0, "end_reason": "stop"}, 0.72, "The STOP counts: the nearest clothes are 0.72 m away"),
+        (BESIDE, 0.8, "the nearest clothes are 0.80 m away, but a wall or a door hides them."),
+        (WRONG, None, "there are no clothes on this storey"),
+        (
+            FOR_ANOTHER | {"stop_target_category": "appliances"}, 4.2,
+            "the agent stopped at an appliance, 1.8 m from the nearest clothes.",
+        ),
+    ],
+)  # fmt: skip
+def test_the_explanation_of_the_end_has_the_number_of_its_noun(
+    line: dict, nearest_m: float | None, expected: str
+) -> None:
+    fixed = {"success": 0.0, "spl": 0.5, "num_steps": 9, "path_length": 3.0, "shortest_path": 2.0}
+    outcome = explain_end(a_result(**fixed | line), "clothes", SuccessRule(), nearest_m, detects=True)
+    assert expected in outcome.sentence
 
 
 @pytest.mark.parametrize("semantics", ["gt", "noisy"])

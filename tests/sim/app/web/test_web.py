@@ -435,9 +435,43 @@ def test_descriptions_that_ship_for_a_house_are_proposed_to_the_stronger_agent(
     proposed = browser.run("return [...document.getElementById('wishes').children].map((option) => option.value)")
     split = load_split("descriptions")
     assert set(proposed) == {episode.goal for episode in split.episodes if episode.house == split.houses[0]}
+    assert browser.run("return document.getElementById('wish').placeholder") == min(proposed, key=len)
+    house = "const house = document.getElementById('house'); return [house.options[0].text, house.value]"
+    assert browser.run(house) == [split.houses[0], split.houses[0]]
     choose = "const split = document.getElementById('split'); split.value = 'traps'; "
     browser.run(choose + "split.dispatchEvent(new Event('change'))")
     assert browser.run("return document.getElementById('wishes').children.length") == 0
+
+
+def test_the_form_hides_no_text_and_its_buttons_need_no_row_of_their_own(server: Server, browser: Browser) -> None:
+    browser.visit(server.address)
+    wait_for(lambda: browser.run("return document.getElementById('agent-note').textContent"))
+    hidden = "const note = document.getElementById('agent-note'); return note.scrollWidth > note.clientWidth"
+    middle = "const box = document.getElementById('{}').getBoundingClientRect(); return (box.top + box.bottom) / 2"
+    caption = "const words = document.getElementById('segmentation-name'); return words.scrollWidth > words.clientWidth"
+    browser.run(
+        "document.body.dataset.step = 0; document.getElementById('segmentation-name').textContent = 'Segments (rednet)'"
+    )
+    for width, height in ((1280, 900), (1200, 789), (390, 900)):
+        browser.resize(width, height)
+        assert not browser.run(hidden)
+        assert not browser.run(caption)
+    browser.resize(1280, 900)
+    assert browser.run(middle.format("start")) == pytest.approx(browser.run(middle.format("agent-note")), abs=5)
+
+
+def test_on_a_phone_no_column_of_the_finished_runs_is_clipped(server: Server, browser: Browser) -> None:
+    browser.visit(server.address)
+    browser.resize(390, 900)
+    try:
+        browser.run("tab('runs')")
+        wait_for(lambda: browser.run("return document.querySelectorAll('#run-list tr').length"))
+        browser.run("document.querySelector('#run-list button').click()")
+        wait_for(lambda: browser.run("return document.querySelectorAll('#episodes tr').length"))
+        clipped = "[...document.querySelectorAll('#runs .scroll')].filter(box => box.scrollWidth > box.clientWidth)"
+        assert browser.run(f"return {clipped}.length") == 0
+    finally:
+        browser.resize(1280, 900)
 
 
 def test_a_run_is_downloaded_and_deleted_with_a_second_click(runs: Path, server: Server, browser: Browser) -> None:
