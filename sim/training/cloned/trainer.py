@@ -23,12 +23,11 @@ from torch import Tensor
 from torch.nn import functional
 
 from sim.core.interface import GOAL_CATEGORIES, Action, ConfigError
-from sim.core.invocation import command
 from sim.core.option_types import Amount, Count, NotNegative, OutFolder, Positive, Seed
 from sim.training.cloned.demonstrations import Demonstration, list_demonstrations, read_demonstration
 from sim.training.figures import empty_figure, require_packages
 from sim.training.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.training.training_files import print_next_commands, read_columns
+from sim.training.training_files import print_next_runs, read_columns
 from stubborn.baselines.cloned_input import (
     HEIGHT_PX,
     MOTION,
@@ -165,9 +164,7 @@ def main(args: Args) -> int:
     train, val = read_all(files)
     Trainer(args, train, val, files).run()
     draw_curve(args.out)
-    weights = args.out / "cloned.safetensors"
-    chosen = ("--agent", "cloned", "--semantics", "gt", "--config", f"agent.weights={weights}")
-    print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
+    print_next_runs(args.out / "cloned.safetensors", "cloned", "agent.weights")
     return 0
 
 
@@ -309,7 +306,7 @@ def draw_curve(out: Path) -> None:
     train, val = (read_columns(out / name) for name in ("train.csv", "val.csv"))
     if not val:
         return
-    figure = empty_figure(9.0, 3.2, what="The curves of a training")
+    figure = empty_figure(9.0, 3.2)
     axes = figure.subplots(1, 2)
     if train:
         axes[0].plot(train["minutes"], train["cross_entropy"], color="0.6", label="training, changes count more")

@@ -219,7 +219,7 @@ def draw_confusion(matrix: Int64[np.ndarray, "classes classes"], file: Path) -> 
     Raises:
         ConfigError: matplotlib is not installed.
     """
-    figure = empty_figure(10.5, 7.2, what="The pictures of a card")
+    figure = empty_figure(10.5, 7.2)
     channels = [*GOAL_CHANNELS, *(MPCAT40_ID[name] - 1 for name in BACKGROUND)]
     goals = matrix[GOAL_CHANNELS].astype(np.float64)
     percent = 100.0 * goals / np.maximum(goals.sum(axis=1, keepdims=True), 1.0)
@@ -251,7 +251,7 @@ def draw_curves(trainings: Sequence[Path], file: Path) -> None:
     Raises:
         ConfigError: a folder holds no training, or matplotlib is not installed.
     """
-    figure = empty_figure(9.0, 3.4, what="The pictures of a card")
+    figure = empty_figure(9.0, 3.4)
     left, right = figure.subplots(1, 2)
     begin_h = 0.0
     for folder in trainings:

@@ -24,7 +24,7 @@ from msgspec.structs import asdict
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.tables import Cell, ResultTable, to_markdown, to_rich
-from sim.app.commands.traps.family_report import facts_of, family_table, require_matplotlib, write_family_report
+from sim.app.commands.traps.family_report import facts_of, family_table, write_family_report
 from sim.app.commands.traps.picture import draw_trial
 from sim.app.commands.traps.trial import TrapResult, Trial, run_trial
 from sim.app.composition.agents import build_agent, find_agent, free_agent
@@ -39,6 +39,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
 from sim.robot.config import PHYSICS_VERSION
+from sim.training.figures import require_packages
 from stubborn.agent import StubbornAgent
 from stubborn.detection.verification import AcceptAll
 from stubborn.drawing import map_painter
@@ -75,7 +76,7 @@ def main(args: Args) -> int:
     split = load_split(args.split)
     episodes, facts = selected_episodes(split, args), facts_of(split)
     if facts:
-        require_matplotlib()
+        require_packages("matplotlib")
     for name in args.agents:
         find_agent(name)  # a wrong name is refused before anything is written
     write_or_compare_config(args, split)
