@@ -158,12 +158,11 @@ def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(mon
     ("changes", "sentence"),
     [
         ({"shrink": 7}, r"--shrink.*640.*480.*7"),
-        ({"extras": ("boxes",)}, r"--extras.*'boxes'"),
+        ({"extras": ("poses", "poses")}, r"--extras.*'poses poses'"),
         ({"sequence": 2}, r"--sequence.*--views.*--views-per-shard.*2"),
-        ({"rgb": "bmp"}, r"--rgb.*'bmp'"),
         ({"shard": "0/2"}, r'--shard.*"i/n".*1'),
         ({"reshape": True}, "--reshape needs --pool or --furniture"),
-        ({"pool": "heldout", "split": "train"}, r"--pool.*--split.*'heldout'"),
+        ({"pool": "train", "split": "val"}, r"--pool.*--split train.*'val'"),
         ({"profile": "best"}, "Unknown rendering profile 'best'"),
     ],
 )
