@@ -124,9 +124,8 @@ def _cause(result: EpisodeResult) -> str | None:
 
 def _episode_table(results: Sequence[EpisodeResult]) -> Table:
     table = Table(title="Episodes")
-    for name in ("episode", "goal"):
+    for name in ("episode", "goal", "success"):
         table.add_column(name)
-    table.add_column("success")
     for name in ("SPL", "steps", "path m", "shortest m", "to go m", "collisions", "steps/s"):
         table.add_column(name, justify="right")
     for result in sorted(results, key=lambda result: result.episode_id):
@@ -168,9 +167,7 @@ def _summary_table(summary: Mapping[str, Any]) -> Table:
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")
     for metric in (key for key in METRICS if key in summary):
-        low, high = summary[metric]["ci95"]
-        interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
-        table.add_row(metric, _number(summary[metric]["mean"], 3), interval)
+        table.add_row(metric, *_mean_and_interval(summary[metric]))
     return table
 
 
@@ -183,12 +180,15 @@ def _goals_table(goals: Mapping[str, Any]) -> Table:
     for name, means in goals.items():
         cells = []
         for key in ("success", "spl"):
-            low, high = means[key]["ci95"]
-            interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
-            cells += [_number(means[key]["mean"], 3), interval]
+            cells += _mean_and_interval(means[key])
         by_goat = [_number(means[key]["mean"], 3) for key in ("goat_success", "goat_spl")]
         table.add_row(name.replace("_", " "), str(means["goals"]), *cells, *by_goat)
     return table
+
+
+def _mean_and_interval(estimate: Mapping[str, Any]) -> tuple[str, str]:
+    low, high = estimate["ci95"]
+    return _number(estimate["mean"], 3), "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
 
 
 def _number(value: float | None, digits: int = 2) -> str:
