@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from sim.app import cli
@@ -29,11 +28,6 @@ def main(options: RunOptions) -> int:
     if options.list_agents:
         console.print(agent_table())
         return 0
-    return _run(options, console)
-
-
-def _run(options: RunOptions, console: Console) -> int:
-    """Runs the episodes; returns the exit status."""
     from sim.app.composition.environments import episodes_of  # these import MuJoCo, which a list does not need
     from sim.app.composition.running import run_missing
     from sim.app.composition.setup import resolve
