@@ -157,13 +157,10 @@ def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(mon
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"shrink": 7}, r"--shrink.*640.*480.*7"),
         ({"extras": ("poses", "poses")}, r"--extras.*'poses poses'"),
         ({"sequence": 2}, r"--sequence.*--views.*--views-per-shard.*2"),
-        ({"shard": "0/2"}, r'--shard.*"i/n".*1'),
         ({"reshape": True}, "--reshape needs --pool or --furniture"),
         ({"pool": "train", "split": "val"}, r"--pool.*--split train.*'val'"),
-        ({"profile": "best"}, "Unknown rendering profile 'best'"),
     ],
 )
 def test_a_wrong_option_is_refused(split: Path, tmp_path: Path, changes: dict, sentence: str) -> None:
