@@ -77,15 +77,11 @@ def run_missing(
             f"(version {split['version']}), rendered by {versions['gl_renderer']}; "
             f"segmentation: {segmentation_of(record)}; results in {options.out}"
         )
-        for note in notes_on(options.agent, setup.config.agent):
-            console.print(note, soft_wrap=True)
-        for note in filter(None, (setup.borrowed_parameters, setup.missing_calibration)):
+        for note in _notes_on(setup):
             console.print(note, soft_wrap=True)
         _report_resumed(run, len(episodes), len(todo), code, console)
-        if todo and must_compile():
-            console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
-            if (cache := choose_cache()) is not None:
-                console.print(f"Neither the installation nor a home folder can be written: {cache} keeps the result.")
+        for note in _notes_on_compilation() if todo else ():
+            console.print(note)
         spec = RunnerSpec(runner, setup)
         longest = max((len(episode.specs) for episode in todo), default=1) * setup.config.task.max_steps
         progress = ProgressReport(console, total=len(todo), max_steps=longest)
@@ -120,6 +116,20 @@ def _require_own_lines(options: RunOptions, run: RunDirectory[EpisodeResult], ep
         drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}(~\d+)?", line.episode_id))
         known |= {line.episode_id: (options.house.stem, options.goal or line.goal) for line in drawn}
     run.require_of(known)
+
+
+def _notes_on(setup: Setup) -> Iterator[str]:
+    """Yields sentences about the agent of a run and its segmentation."""
+    yield from notes_on(setup.options.agent, setup.config.agent)
+    yield from filter(None, (setup.borrowed_parameters, setup.missing_calibration))
+
+
+def _notes_on_compilation() -> Iterator[str]:
+    """Yields sentences about the code that numba has to compile; none if all is in its cache."""
+    if must_compile():
+        yield "This is the first run here: numba compiles the agent and the sensors, up to a minute."
+        if (cache := choose_cache()) is not None:
+            yield f"Neither the installation nor a home folder can be written: {cache} keeps the result."
 
 
 def _report_resumed(run: RunDirectory[EpisodeResult], total: int, todo: int, code: str, console: Console) -> None:
