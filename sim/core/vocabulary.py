@@ -98,6 +98,11 @@ def plain(name: str) -> str:
     return "television" if name == "tv_monitor" else name.replace("_", " ")
 
 
+def counted(number: int, noun: str) -> str:
+    """Returns a number with its noun: "1 episode", "2 episodes"."""
+    return f"{number} {noun}" + "s" * (number != 1)
+
+
 def in_words(goal: str) -> str:
     """Returns the name of a category, "chest of drawers", or a goal in words from its noun phrase on."""
     return re.sub(r"^((find|go to|look for) )?((the|an?) )?", "", plain(goal).strip(), flags=re.IGNORECASE)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.interface import Action, SuccessRule
-from sim.core.vocabulary import in_words, with_article
+from sim.core.vocabulary import counted, in_words, with_article
 from sim.task.failures import (
     LOOP_STEPS,
     STOPPED_AT_GOAL_M,
@@ -88,7 +88,7 @@ def explain_end(
         detects: whether the agent stops because of a segmentation. A person, or an agent without one, has
             stopped too early where the goal is not; that is not a false detection.
     """
-    success, steps = result.success == 1.0, f"{result.num_steps} step" + "s" * (result.num_steps != 1)
+    success, steps = result.success == 1.0, counted(result.num_steps, "step")
     found = "Found" if success else "Not found"
     headline = f"{found if result.goals is None else goals_found(result.goals)} after {steps}"
     if result.error:

@@ -16,7 +16,7 @@ from sim.app.evaluation.summary import few_episodes
 from sim.core import invocation
 from sim.core.errors import debug
 from sim.core.reading import printable
-from sim.core.vocabulary import plain
+from sim.core.vocabulary import counted, plain
 from sim.episodes.replicates import episode_of
 from sim.task.result import METRICS, EpisodeResult, goals_found
 
@@ -87,11 +87,6 @@ def file_size(size_bytes: int) -> str:
     if size_bytes < 1000:
         return counted(size_bytes, "byte")
     return f"{size_bytes / 1e3:.0f} kB" if size_bytes < 999_500 else f"{size_bytes / 1e6:.1f} MB"
-
-
-def counted(number: int, noun: str) -> str:
-    """Returns a number with its noun: "1 episode", "2 episodes"."""
-    return f"{number} {noun}" + "s" * (number != 1)
 
 
 def print_results(console: Console, results: Sequence[EpisodeResult], summary: Mapping[str, Any]) -> None:

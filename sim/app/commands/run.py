@@ -15,6 +15,7 @@ from sim.app.analysis import display
 from sim.app.composition.agents import SPECS
 from sim.app.options import RunOptions
 from sim.core.invocation import RUN_STOPPED
+from sim.core.vocabulary import counted
 from sim.task.result import EpisodeResult
 from stubborn.agents import EXPLORERS
 
@@ -44,7 +45,7 @@ def main(options: RunOptions) -> int:
         shard.require_own_numbers(out)
         episodes, out = shard.select(episodes), out / shard.folder
         if not episodes:
-            console.print(f"Shard {options.shard} holds none of the {display.counted(count, 'episode')}.")
+            console.print(f"Shard {options.shard} holds none of the {counted(count, 'episode')}.")
             return 0
     setup = replace(setup, options=replace(options, episodes=count, out=out))
     results, summary = run_missing(setup, episodes, split, console)

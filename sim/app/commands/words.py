@@ -26,12 +26,11 @@ from typing import Literal
 import numpy as np
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError, EpisodeError
 from sim.core.goals import GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, CameraModel
-from sim.core.vocabulary import UNSEEN, vocabulary
+from sim.core.vocabulary import UNSEEN, counted, vocabulary
 from sim.env.scene import Scene
 from sim.episodes.chains import ChainDrawer
 from sim.episodes.descriptions import Descriptions

@@ -9,7 +9,6 @@ from typing import Any
 
 from rich.console import Console
 
-from sim.app.analysis import display
 from sim.app.analysis.progress import ProgressReport
 from sim.app.composition import RUNNER
 from sim.app.composition.agents import notes_on
@@ -23,6 +22,7 @@ from sim.app.evaluation.summary import summary_of
 from sim.app.evaluation.workers import RunnerSpec
 from sim.app.options import RunOptions
 from sim.core.geometry.compiling import choose_cache, must_compile
+from sim.core.vocabulary import counted
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
 from sim.episodes.splits import load_split
@@ -73,7 +73,7 @@ def run_missing(
             console.print(f"Episodes that ended with an error and are run again: {len(again)}.")
         todo = [episode for episode in episodes if episode.episode_id not in done]
         console.print(
-            f"{options.agent}, {display.counted(len(episodes), 'episode')} of {split['name']} "
+            f"{options.agent}, {counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {versions['gl_renderer']}; "
             f"segmentation: {segmentation_of(record)}; results in {options.out}"
         )

@@ -33,6 +33,7 @@ from sim.core.reading import (  # fmt: skip
     reason_of,
     sha256_of,
 )
+from sim.core.vocabulary import counted
 from sim.task.result import READ_BY, EpisodeResult
 
 IDENTITY = ("agent", "semantics", "seed")
@@ -180,7 +181,7 @@ class RunDirectory(Generic[LineT]):
         before = [text.partition("+")[2] for text in codes if text]
         now = code.partition("+")[2]
         if now and all(before) and before and now not in before:
-            number = f"{len(kept)} episode" + "s" * (len(kept) != 1)
+            number = counted(len(kept), "episode")
             raise ConfigError(
                 f"Your code ({self.config.get('agent')}) has changed since it ran {number} in --out '{self.path}' "
                 f"(code {before[-1]}, now {now}). To run all episodes with the new code, give another --out; to keep "

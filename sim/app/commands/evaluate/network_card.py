@@ -13,6 +13,7 @@ from jaxtyping import Int64
 from sim.core.files import write_atomically
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
 from sim.core.reading import convert
+from sim.core.vocabulary import counted
 from sim.training.figures import empty_figure
 from sim.training.segmentation.breakdown import Breakdown
 from sim.training.segmentation.evaluation import GOAL_CHANNELS, Confusions, Iou, Reliability
@@ -126,7 +127,7 @@ def _summary(network: Evaluated, measured: Measured, stages: Sequence[Training])
     yield f"| pixel accuracy | {iou.accuracy:.3f} |"
     yield f"| pixel accuracy without calibration | {own.accuracy:.3f} |"
     yield f"| number of views | {measured.views} |"
-    yield f"| time per frame, {network.threads} thread{'s' * (network.threads != 1)} | {measured.frame_ms:.0f} ms |"
+    yield f"| time per frame, {counted(network.threads, 'thread')} | {measured.frame_ms:.0f} ms |"
     yield from (f"| training | {training_text(stage)} |" for stage in stages)
     yield f"| calibration error without calibration | {measured.before.error:.3f} |"
     yield f"| calibration error with calibration | {measured.after.error:.3f} |"

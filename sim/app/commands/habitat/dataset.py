@@ -17,13 +17,13 @@ from pathlib import Path
 from typing import Any, Literal
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.bridges.habitat.conversions import CATEGORIES
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError
 from sim.core.files import write_together
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40_ID
+from sim.core.vocabulary import counted
 from sim.episodes import habitat
 from sim.episodes.goat import goat_house, ovon_house
 from sim.episodes.reachable_goals import find_reachable_goals

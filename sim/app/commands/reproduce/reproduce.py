@@ -49,6 +49,7 @@ from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.files import file_name, write_atomically, write_together
 from sim.core.option_types import meanings
+from sim.core.vocabulary import counted
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
 from sim.task.failures import cause_of_failure
@@ -217,7 +218,7 @@ def _write_all(args: Args, pages: Sequence[str], console: Console) -> None:
     if pages:
         file = args.out / "tables" / f"{stem_of(args, args.table)}.md"
         write_atomically(file, "\n".join(pages))
-        console.print(f"{display.counted(len(pages), 'table')} on {file}")
+        console.print(f"{counted(len(pages), 'table')} on {file}")
 
 
 def _write_pages(args: Args, of_splits: Sequence[Args], pages: Mapping[str, Sequence[str]], console: Console) -> None:
@@ -254,7 +255,7 @@ def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequ
     errors = sum(of.results[i].is_error for of in runs.values() for i in common)
     codes = Counter(code_of(of, i) for of in runs.values() for i in common)
     notes = [
-        f"{display.counted(len(common), 'episode')} in {display.counted(houses, 'house')} of "
+        f"{counted(len(common), 'episode')} in {counted(houses, 'house')} of "
         f"{split['name']} {split['version']} ({split['sha256'][:8]}), "
         f"sensor noise {config.get('noise', RunOptions.noise)}, seed {config.get('seed', RunOptions.seed)}, "
         f"mujoco {versions.get('mujoco', 'unknown')}.",

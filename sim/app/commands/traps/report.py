@@ -35,6 +35,7 @@ from sim.core.files import csv_text, file_name, open_to_grow, write_atomically, 
 from sim.core.files import write_picture as save_picture
 from sim.core.interface import Agent, ConfigError
 from sim.core.reading import convert, read_json, read_lines
+from sim.core.vocabulary import counted
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
@@ -94,7 +95,7 @@ def main(args: Args) -> int:
             with open_to_grow(results, "a") as file:
                 file.write(json.dumps(asdict(rows[-1])) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
-            console.print(f"{name} {trial.episode_id}: {outcome} after {display.counted(len(trial.motions), 'step')}")
+            console.print(f"{name} {trial.episode_id}: {outcome} after {counted(len(trial.motions), 'step')}")
     table = table_of(rows)
     write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": to_markdown([table])})
     write_family_report(args.out, rows, args.split, facts, pictures=args.pictures)

@@ -31,12 +31,12 @@ from typing import Literal
 import numpy as np
 
 from sim.app import cli
-from sim.app.analysis import display
 from sim.app.commands.house_file import HouseFile
 from sim.app.evaluation.executors import make_executor
 from sim.app.evaluation.parallel import Shard, ordered_map
 from sim.core.errors import HouseError
 from sim.core.interface import CameraModel, ConfigError
+from sim.core.vocabulary import counted
 from sim.env.scene import Scene
 from sim.episodes.splits import Split, load_split, one_house
 from sim.homes.housegen.furniture import CATALOGUE
@@ -137,12 +137,12 @@ def main(args: Args) -> int:
     if "instances" not in args.extras:
         print("Without --extras instances, the views have no ids of objects, which `train segmentation` needs.")
     complete = f"{len(tasks) - len(missing)} complete, {len(todo)} to generate here."
-    print(f"{display.counted(len(tasks), 'shard')}, {complete}", flush=True)
+    print(f"{counted(len(tasks), 'shard')}, {complete}", flush=True)
     began, made = time.perf_counter(), 0
     for note in ordered_map(functools.partial(make_shard, args, config), todo, executor=executor):
         made += note.views
         rate = made / (time.perf_counter() - began)
-        views = display.counted(note.views, "view")
+        views = counted(note.views, "view")
         print(f"{note.shard}: {views} of {note.house}, {note.size_bytes / 1e6:.1f} MB, {rate:.1f} views/s")
         sys.stdout.flush()
         notes[int(note.shard.rsplit("-", 1)[1])] = note
@@ -335,6 +335,6 @@ def _summary(notes: Sequence[ShardNote]) -> str:
     views, size_bytes = sum(note.views for note in notes), sum(note.size_bytes for note in notes)
     houses = len({note.house for note in notes})
     return (
-        f"{display.counted(views, 'view')} of {display.counted(houses, 'house')} in "
-        f"{display.counted(len(notes), 'shard')}, {size_bytes >> 20} MB; of the processes' time: {share}."
+        f"{counted(views, 'view')} of {counted(houses, 'house')} in "
+        f"{counted(len(notes), 'shard')}, {size_bytes >> 20} MB; of the processes' time: {share}."
     )
