@@ -11,7 +11,6 @@ demonstrator. The same command continues a killed run: `state.pt` holds weights,
 from __future__ import annotations
 
 import time
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +25,7 @@ from sim.core.interface import GOAL_CATEGORIES, Action, ConfigError
 from sim.core.option_types import Amount, Count, NotNegative, OutFolder, Positive, Seed
 from sim.training.cloned.demonstrations import Demonstration, list_demonstrations, read_demonstration
 from sim.training.figures import empty_figure, require_packages
+from sim.training.plan_split import HELD_BACK, is_held_back
 from sim.training.timed_training import PRINT_EVERY_S, TimedTraining, stride
 from sim.training.training_files import print_next_runs, read_columns
 from stubborn.baselines.cloned_input import (
@@ -39,9 +39,6 @@ from stubborn.baselines.cloned_input import (
     motions,
 )
 from stubborn.baselines.cloned_net import FILES, ClonedNet
-
-HELD_BACK = 10
-"""One of this many houses is held back."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,8 +175,7 @@ def read_all(files: Sequence[Path]) -> tuple[list[LabelledSteps], list[LabelledS
             printed_s = time.monotonic()
             print(f"{number} of {len(files)} demonstrations read", flush=True)
         demonstration = read_demonstration(file)
-        held_back = zlib.crc32(demonstration.house.encode()) % HELD_BACK == 0
-        (val if held_back else train).append(labelled_steps_of(demonstration, file))
+        (val if is_held_back(demonstration.house) else train).append(labelled_steps_of(demonstration, file))
     if not train or not val:
         raise ConfigError(
             f"{len(train)} demonstrations to train on and {len(val)} held back: both are needed. One house in "
