@@ -125,6 +125,13 @@ def limited_pillow(refused: Callable[[str], None]) -> Iterator[None]:
             PIL.Image.open = original
 
 
+def jpeg_of(picture: NDArray[Any], quality: int) -> bytes:
+    """Returns an RGB picture, uint8 (h, w, 3), as a JPEG file of this quality, 0 to 100."""
+    written, jpeg = cv2.imencode(".jpg", np.ascontiguousarray(picture[..., ::-1]), [cv2.IMWRITE_JPEG_QUALITY, quality])
+    assert written
+    return jpeg.tobytes()
+
+
 def tiled(pictures: Sequence[NDArray[np.uint8]], columns: int) -> NDArray[np.uint8]:
     """Returns one picture that shows pictures of the same size (h, w, 3) in a grid, row by row.
 

@@ -107,6 +107,11 @@ def plain(name: str) -> str:
     return "television" if name == "tv_monitor" else name.replace("_", " ")
 
 
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """Returns a number with its noun: "1 episode", "2 episodes"; `plural` is for nouns that take no plain s."""
+    return f"{number} {noun if number == 1 else plural or noun + 's'}"
+
+
 def in_words(goal: str) -> str:
     """Returns the name of a category, "chest of drawers", or a goal in words from its noun phrase on."""
     return _ARTICLE.sub("", _OPENING.sub("", plain(goal).strip()))

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from sim.core.interface import MPCAT40_ID
+from sim.core.vocabulary import counted
 from sim.gl import mujoco
 from sim.houses.labels import Labels, collidable_geoms, names_of_geom, rendered_geoms
 
@@ -90,7 +91,7 @@ def _remove(spec: mujoco.MjSpec, kind: str, elements: Iterable[Any]) -> str:
 
 
 def _count(kind: str, names: list[str]) -> str:
-    number = f"{len(names)} {kind}{'' if len(names) == 1 else 's'}"
+    number = counted(len(names), kind)
     named = [name for name in names if name]
     return f"{number} ({_list(named)})" if named else number
 

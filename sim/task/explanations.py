@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.interface import Action, SuccessRule
-from sim.core.vocabulary import in_words, is_plural, with_article
+from sim.core.vocabulary import counted, in_words, is_plural, with_article
 from sim.task.failures import (
     LOOP_STEPS,
     STOPPED_AT_GOAL_M,
@@ -88,7 +88,7 @@ def explain_end(
         detects: whether the agent stops because of a segmentation. A person, or an agent without one, has
             stopped too early where the goal is not; that is not a false detection.
     """
-    success, steps = result.success == 1.0, f"{result.num_steps} step" + "s" * (result.num_steps != 1)
+    success, steps = result.success == 1.0, counted(result.num_steps, "step")
     found = "Found" if success else "Not found"
     headline = f"{found if result.goals is None else goals_found(result.goals)} after {steps}"
     if result.error:
@@ -187,7 +187,7 @@ def marks(result: EpisodeResult, trajectory: Trajectory) -> list[Mark]:
     moments: list[Mark] = []
     seen, at_goal = _seen(trajectory), _at_goal(trajectory)
     if len(seen):
-        moments.append(Mark("seen", int(seen[0]), None, f"{goal} first in view ({_frames(len(seen))} in all)"))
+        moments.append(Mark("seen", int(seen[0]), None, f"{goal} first in view ({counted(len(seen), 'frame')} in all)"))
     if len(at_goal) and not trajectory.success:
         moments.append(Mark("at_goal", int(at_goal[0]), None, "the robot is where a STOP would succeed"))
     elif not trajectory.success and (nearest := _nearest(trajectory)) is not None:
@@ -277,11 +277,7 @@ def _view(result: EpisodeResult, trajectory: Trajectory) -> str:
     if not len(seen):
         return f"{_never_seen(result)}."
     was = "were" if is_plural(result.goal) else "was"
-    return f"The {in_words(result.goal)} {was} in view from step {seen[0]} on, in {_frames(len(seen))}."
-
-
-def _frames(number: int) -> str:
-    return f"{number} frame" + "s" * (number != 1)
+    return f"The {in_words(result.goal)} {was} in view from step {seen[0]} on, in {counted(len(seen), 'frame')}."
 
 
 def _never_seen(result: EpisodeResult) -> str:

@@ -18,19 +18,13 @@ def require_packages(*names: str) -> None:
             raise ConfigError(f"This command needs the package {name}: pip install 'stubborn-objectnav[train]'.")
 
 
-def empty_figure(width_in: float, height_in: float, *, what: str) -> Figure:
-    """Returns an empty figure; its size is in inches.
-
-    Args:
-        width_in: width.
-        height_in: height.
-        what: what is drawn, in the plural, for the error message.
+def empty_figure(width_in: float, height_in: float) -> Figure:
+    """Returns an empty figure of this width and height in inches.
 
     Raises:
         ConfigError: matplotlib is not installed.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise ConfigError(f"{what} need matplotlib: pip install 'stubborn-objectnav[train]'.") from None
+    require_packages("matplotlib")
+    from matplotlib.figure import Figure
+
     return Figure(figsize=(width_in, height_in), layout="constrained")

@@ -1,4 +1,4 @@
-"""The house plans that explorers are trained on, and those held back for comparing them."""
+"""The houses that explorers and policies are trained on, and those held back for comparing them."""
 
 from __future__ import annotations
 
@@ -14,6 +14,11 @@ HELD_BACK = 10
 """One house in this number is held back from training, by a hash of its name."""
 
 
+def is_held_back(house: str, one_in: int = HELD_BACK) -> bool:
+    """Returns whether a house of this name is held back; one of `one_in` is."""
+    return zlib.crc32(house.encode()) % one_in == 0
+
+
 def split_plans(folders: Iterable[Path]) -> tuple[list[Path], list[Path]]:
     """Returns the plans of some folders to train on, and those held back; the storeys of a house stay together.
 
@@ -27,5 +32,5 @@ def split_plans(folders: Iterable[Path]) -> tuple[list[Path], list[Path]]:
         if not files:
             raise ConfigError(f"No plan in '{folder}': `{command('houses', 'plans')}` writes them.")
         for file in files:
-            (held_back if zlib.crc32(house_of(file.stem).encode()) % HELD_BACK == 0 else trained).append(file)
+            (held_back if is_held_back(house_of(file.stem)) else trained).append(file)
     return trained, held_back

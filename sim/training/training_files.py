@@ -14,6 +14,7 @@ import torch
 
 from sim.core.files import open_to_grow, write_atomically
 from sim.core.interface import ConfigError
+from sim.core.invocation import command
 from sim.core.reading import convert, read_bytes, read_csv, reason_of
 from stubborn.network_files import read_checkpoint
 
@@ -67,9 +68,7 @@ def _numbers(line: str) -> list[float]:
         return []
 
 
-def options_of(
-    args: Any, *, may_change: Collection[str] = (), files: Mapping[str, Sequence[Path]] | None = None
-) -> dict[str, str]:
+def options_of(args: Any, *, may_change: Collection[str], files: Mapping[str, Sequence[Path]]) -> dict[str, str]:
     """Returns the options that a continued run must have in common with its start, as text by the name of the field.
 
     Args:
@@ -83,7 +82,7 @@ def options_of(
     """
     kept = {field.name for field in fields(args)} - set(may_change)
     return {name: str(getattr(args, name)) for name in kept} | {
-        name: _list_of(of_option) for name, of_option in (files or {}).items()
+        name: _list_of(of_option) for name, of_option in files.items()
     }
 
 
@@ -151,7 +150,7 @@ def load_state(
     progress: type[ProgressT],
     *,
     device: torch.device | str = "cpu",
-    check: Callable[[ProgressT], None] | None = None,
+    check: Callable[[ProgressT], None],
 ) -> ProgressT | None:
     """Loads the state of a run into its parts and returns the progress; None: the file does not exist.
 
@@ -175,14 +174,19 @@ def load_state(
             f"The state '{file}' of the run is of another version of this command ({str(error).rstrip('.')}); take "
             "another folder."
         ) from None
-    if check is not None:
-        check(done)
+    check(done)
     try:
         for name, part in parts.items():
             part.load_state_dict(content[name])
     except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
         raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
     return done
+
+
+def print_next_runs(weights: Path, agent: str, field: str) -> None:
+    """Prints the path of the trained weights, and the commands that run an agent with `--config FIELD=WEIGHTS`."""
+    words = ("--agent", agent, "--semantics", "gt", "--config", f"{field}={weights}")
+    print_next_commands(weights, command("run", *words), command("run", *words, "--episodes", "2", "--video"))
 
 
 def print_next_commands(weights: Path, *commands: str) -> None:

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sim.app.analysis.display import counted
 from sim.app.analysis.metrics import difference_cell, difference_note, episodes_of, mean_cell
 from sim.app.analysis.tables import ResultTable
 from sim.app.evaluation.config_fields import ABSENT, field_text, run_differences
 from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.app.evaluation.results import RunRecord, read_record, read_results
 from sim.core.errors import ConfigError
+from sim.core.vocabulary import counted
 from sim.task.result import EpisodeResult, metrics_for
 from sim.task.trajectory import read_trajectory, trajectory_file
 

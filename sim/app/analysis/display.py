@@ -16,7 +16,7 @@ from sim.app.evaluation.summary import few_episodes
 from sim.core import invocation
 from sim.core.errors import debug
 from sim.core.reading import printable
-from sim.core.vocabulary import plain
+from sim.core.vocabulary import counted, plain
 from sim.episodes.replicates import episode_of
 from sim.task.result import METRICS, EpisodeResult, goals_found
 
@@ -89,11 +89,6 @@ def file_size(size_bytes: int) -> str:
     return f"{size_bytes / 1e3:.0f} kB" if size_bytes < 999_500 else f"{size_bytes / 1e6:.1f} MB"
 
 
-def counted(number: int, noun: str) -> str:
-    """Returns a number with its noun: "1 episode", "2 episodes"."""
-    return f"{number} {noun}" + "s" * (number != 1)
-
-
 def print_results(console: Console, results: Sequence[EpisodeResult], summary: Mapping[str, Any]) -> None:
     """Prints the episodes if they are few, and the means with their intervals."""
     if len(results) <= MAX_EPISODES_SHOWN:
@@ -124,9 +119,8 @@ def _cause(result: EpisodeResult) -> str | None:
 
 def _episode_table(results: Sequence[EpisodeResult]) -> Table:
     table = Table(title="Episodes")
-    for name in ("episode", "goal"):
+    for name in ("episode", "goal", "success"):
         table.add_column(name)
-    table.add_column("success")
     for name in ("SPL", "steps", "path m", "shortest m", "to go m", "collisions", "steps/s"):
         table.add_column(name, justify="right")
     for result in sorted(results, key=lambda result: result.episode_id):
@@ -168,9 +162,7 @@ def _summary_table(summary: Mapping[str, Any]) -> Table:
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")
     for metric in (key for key in METRICS if key in summary):
-        low, high = summary[metric]["ci95"]
-        interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
-        table.add_row(metric, _number(summary[metric]["mean"], 3), interval)
+        table.add_row(metric, *_mean_and_interval(summary[metric]))
     return table
 
 
@@ -183,12 +175,15 @@ def _goals_table(goals: Mapping[str, Any]) -> Table:
     for name, means in goals.items():
         cells = []
         for key in ("success", "spl"):
-            low, high = means[key]["ci95"]
-            interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
-            cells += [_number(means[key]["mean"], 3), interval]
+            cells += _mean_and_interval(means[key])
         by_goat = [_number(means[key]["mean"], 3) for key in ("goat_success", "goat_spl")]
         table.add_row(name.replace("_", " "), str(means["goals"]), *cells, *by_goat)
     return table
+
+
+def _mean_and_interval(estimate: Mapping[str, Any]) -> tuple[str, str]:
+    low, high = estimate["ci95"]
+    return _number(estimate["mean"], 3), "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
 
 
 def _number(value: float | None, digits: int = 2) -> str:

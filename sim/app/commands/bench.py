@@ -30,6 +30,7 @@ from sim.core.files import write_atomically
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, Agent, CameraModel
 from sim.core.paths import processor
+from sim.core.vocabulary import counted
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
@@ -80,7 +81,7 @@ def main(args: Args) -> int:
     console = display.make_console()
     images = []
     for sensors in (("rgb", "depth", "semantic"), ("depth", "semantic")):
-        console.print(f"Rendering {display.counted(houses * poses, 'view')} with both renderers: {', '.join(sensors)}")
+        console.print(f"Rendering {counted(houses * poses, 'view')} with both renderers: {', '.join(sensors)}")
         images.append(_images(sensors, houses, poses))
     console.print(f"Running {steps} steps of stubborn with each kind of segmentation")
     truth_ms, with_truth_ms = _steps_ms("gt", steps)

@@ -22,6 +22,7 @@ from sim.app.analysis.metrics import SPL, SUCCESS, difference_cell, episodes_of
 from sim.app.analysis.tables import NOT_SIGNIFICANT, to_csv, to_markdown, to_rich
 from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.core.files import write_together
+from sim.core.vocabulary import counted
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,4 +77,4 @@ def verdict(first: Run, second: Run) -> str:
             sentences[-1] += (
                 f" (to be significant, this difference needs about {needed} pairs in {more:.1f} times the houses)"
             )
-    return f"Verdict over {display.counted(len(set(episodes_of(a))), 'episode')}. {'. '.join(sentences)}."
+    return f"Verdict over {counted(len(set(episodes_of(a))), 'episode')}. {'. '.join(sentences)}."

@@ -33,7 +33,6 @@ from pathlib import Path
 import numpy as np
 
 from sim.app import cli
-from sim.app.analysis import display
 from sim.app.commands.house_file import HouseFile
 from sim.app.evaluation.parallel import ordered_map
 from sim.app.viewers.episode_map import draw_episode_map
@@ -42,6 +41,7 @@ from sim.core.files import inside, write_picture, write_together
 from sim.core.interface import ConfigError, SuccessRule
 from sim.core.invocation import command
 from sim.core.reading import read_bytes
+from sim.core.vocabulary import counted
 from sim.episodes.episode import Episode
 from sim.episodes.house_episodes import Ask, HouseAsks, StartDrawer, find_house_asks, turned_start
 from sim.episodes.house_list import has_house_list, read_house_list
@@ -101,7 +101,7 @@ def main(args: Args) -> int:
         goals[house] = asks
         instances, asked = sum(map(len, asks.listed.values())), len({ask.goal for ask in asks.asks})
         print(
-            f"{house}: {display.counted(len(asks.listed), 'goal')}, {asked} of them asked for, {instances} instances, "
+            f"{house}: {counted(len(asks.listed), 'goal')}, {asked} of them asked for, {instances} instances, "
             f"{len(asks.unreachable)} unreachable",
             flush=True,
         )
@@ -260,7 +260,7 @@ def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]
     for house, (of_one, relaxed) in zip(turns, drawn, strict=True):
         episodes |= dict(of_one)
         note = f", {relaxed} of them do not meet the rule of the recipe" if relaxed else ""
-        print(f"{house}: {display.counted(len(of_one), 'episode')}{note}", flush=True)
+        print(f"{house}: {counted(len(of_one), 'episode')}{note}", flush=True)
     return [episodes[i] for i in range(len(order))]
 
 
@@ -309,7 +309,7 @@ def _report(episodes: Sequence[Episode], goals: Mapping[str, HouseAsks], took_s:
     """Prints statistics of the episodes."""
     distances = np.array([episode.shortest_path_m for episode in episodes], dtype=np.float64)
     print(
-        f"{display.counted(len(episodes), 'episode')} in {display.counted(len(goals), 'house')}, "
+        f"{counted(len(episodes), 'episode')} in {counted(len(goals), 'house')}, "
         f"made in {took_s:.1f} s, {len(goals) / took_s:.2f} houses/s"
     )
     print(f"geodesic distance: {distances.min():.1f} to {distances.max():.1f} m, median {np.median(distances):.1f} m")

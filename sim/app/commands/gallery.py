@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 
 from sim.app import cli
-from sim.app.analysis import display
 from sim.app.commands.house_file import HouseFile
 from sim.app.viewers.house_pictures import (
     Picture,
@@ -33,7 +32,7 @@ from sim.core.files import write_picture
 from sim.core.interface import ConfigError
 from sim.core.paths import assets_dir
 from sim.core.pictures import tiled
-from sim.core.vocabulary import plain
+from sim.core.vocabulary import counted, plain
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.catalogue import Catalogue, Style
 from sim.homes.housegen.furniture.item import Geom, Item, Look, Pool
@@ -93,7 +92,7 @@ def main(args: Args) -> int:
             if of_pool:
                 copies, name = (2, args.pool) if args.furniture is None else (1, "imported")
                 sheet = draw_sheet(of_pool, np.random.default_rng(args.seed), copies, catalogue)
-                title = f"{plain(category)}: {display.counted(len(of_pool), 'style')}, {name}"
+                title = f"{plain(category)}: {counted(len(of_pool), 'style')}, {name}"
                 _save(args.out / f"sheet_{name}_{category}.png", titled(sheet, title))
     return 0
 

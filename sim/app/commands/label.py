@@ -27,6 +27,7 @@ from sim.app.viewers.house_pictures import distinct_colours, draw_top
 from sim.core.errors import ConfigError, HouseError
 from sim.core.files import write_atomically, write_picture
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40
+from sim.core.vocabulary import counted
 from sim.gl import mujoco
 from sim.houses.foreign import remove_unsupported
 from sim.houses.geoms import data_at_rest
@@ -82,7 +83,7 @@ def main(args: Args) -> int:
         say(sentence)
     if args.out is not None:
         write_atomically(args.out, rules_text(rules))
-        wrote = f"Wrote {display.counted(len(rules), 'rule')} to {args.out}."
+        wrote = f"Wrote {counted(len(rules), 'rule')} to {args.out}."
         say(f"{wrote} Edit the categories, then check them with --labels.")
     if args.picture is not None:
         plain, coloured = draw_top(house), draw_top(house, colours=distinct_colours(labels.categories()))

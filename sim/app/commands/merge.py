@@ -25,6 +25,7 @@ from sim.app.evaluation.summary import summary_of
 from sim.core.files import episode_id_of, write_atomically
 from sim.core.interface import ConfigError
 from sim.core.reading import read_bytes
+from sim.core.vocabulary import counted
 from sim.task.result import EpisodeResult
 
 SHARDS = "shard_*_of_*"
@@ -71,7 +72,7 @@ def main(args: Args) -> int:
         copy_files(run, results, added, out)
     stored = read_record(out / "config.json")  # the folder may hold an earlier merge of other episodes
     missing = max(stored["episodes"] - len(merged.lines), 0)
-    counts = f"{display.counted(len(merged.lines), 'episode')} of {display.counted(len(runs), 'run')}"
+    counts = f"{counted(len(merged.lines), 'episode')} of {counted(len(runs), 'run')}"
     console.print(f"{counts}, {missing} missing; results in {out}", soft_wrap=True)
     keys = list(dict.fromkeys(str(run.config["seed_key"]) for run in runs if run.config.get("seed_key")))
     if len(keys) > 1:

@@ -23,6 +23,7 @@ from sim.app.analysis.comparison import read_run
 from sim.app.analysis.report.build import MAX_RUNS, build_page
 from sim.core.errors import ConfigError
 from sim.core.files import require_writable, write_atomically
+from sim.core.vocabulary import counted
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +45,7 @@ def main(args: Args) -> int:
     require_writable(out, name="--out", folder=False)
     console = display.make_console()
     console.print(
-        f"{display.counted(max(len(run.results) for run in runs), 'episode')}; "
+        f"{counted(max(len(run.results) for run in runs), 'episode')}; "
         "each house takes about a second, each goal in it a tenth."
     )
     command = shlex.join(["stubborn", "report", *map(str, args.runs)])

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from sim.app import cli
@@ -16,6 +15,7 @@ from sim.app.analysis import display
 from sim.app.composition.agents import SPECS
 from sim.app.options import RunOptions
 from sim.core.invocation import RUN_STOPPED
+from sim.core.vocabulary import counted
 from sim.task.result import EpisodeResult
 from stubborn.agents import EXPLORERS
 
@@ -29,11 +29,6 @@ def main(options: RunOptions) -> int:
     if options.list_agents:
         console.print(agent_table())
         return 0
-    return _run(options, console)
-
-
-def _run(options: RunOptions, console: Console) -> int:
-    """Runs the episodes; returns the exit status."""
     from sim.app.composition.environments import episodes_of  # these import MuJoCo, which a list does not need
     from sim.app.composition.running import run_missing
     from sim.app.composition.setup import resolve
@@ -50,7 +45,7 @@ def _run(options: RunOptions, console: Console) -> int:
         shard.require_own_numbers(out)
         episodes, out = shard.select(episodes), out / shard.folder
         if not episodes:
-            console.print(f"Shard {options.shard} holds none of the {display.counted(count, 'episode')}.")
+            console.print(f"Shard {options.shard} holds none of the {counted(count, 'episode')}.")
             return 0
     setup = replace(setup, options=replace(options, episodes=count, out=out))
     results, summary = run_missing(setup, episodes, split, console)

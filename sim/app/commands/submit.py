@@ -17,7 +17,6 @@ import tyro
 
 from sim.app import cli
 from sim.app.analysis.comparison import read_run
-from sim.app.analysis.display import counted
 from sim.app.evaluation.results import segmentation_of
 from sim.app.submissions.checks import PLACES, isolation_text, truth_of
 from sim.app.submissions.contents import SUFFIX, write_submission
@@ -25,6 +24,7 @@ from sim.app.submissions.leaderboard import MIN_EPISODES
 from sim.app.submissions.packing import About, pack
 from sim.core.errors import ConfigError
 from sim.core.invocation import command
+from sim.core.vocabulary import counted
 
 
 @dataclass(frozen=True, kw_only=True)

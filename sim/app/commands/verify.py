@@ -28,7 +28,6 @@ from typing import Annotated
 import tyro
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.analysis.metrics import SPL, SUCCESS, mean_cell
 from sim.app.composition.agents import SPECS
 from sim.app.submissions.audit import FRAMES, AuditOptions, Checked, check, counts, verdicts
@@ -40,6 +39,7 @@ from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
 from sim.core.paths import processor
 from sim.core.reading import printable
+from sim.core.vocabulary import counted
 
 MAX_TOLERANCE_M = 0.1
 """With more, a replay would prove nothing about lengths."""

@@ -6,8 +6,6 @@ http://127.0.0.1:8008 on your own machine.
 
 from __future__ import annotations
 
-import contextlib
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,8 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 from msgspec import Meta
 
 from sim.app import cli
-from sim.app.analysis import display
-from sim.app.services.hosting import in_address, listen, require_web, show_errors_in_one_line
+from sim.app.services.hosting import in_address, listen, require_web, serve
 from sim.core.configuration import with_absolute_paths
 from sim.core.errors import ConfigError
 
@@ -78,28 +75,19 @@ def main(args: Args) -> int:
     """Serves the page until it is interrupted; returns the exit status."""
     require_web()
     listening = listen(args.host, args.port)  # before the imports, which take seconds
-    import uvicorn
-
     from sim.app.web.choices import Choices
     from sim.app.web.driven import DrivenRuns
     from sim.app.web.runs import Runs
     from sim.app.web.server import MAX_MESSAGE_BYTES, Hub, make_app
 
     choices, folder = Choices(offer(args)), args.runs.absolute()
-
     port = listening.getsockname()[1]
     hosts = HERE | {name.lower() for name in (args.host, *args.name)} - ALL_INTERFACES
     app = make_app(Hub(DrivenRuns(folder)), choices, Runs(folder), hosts=hosts)
-    config = uvicorn.Config(
-        app, log_level="warning", access_log=False, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1
-    )
-    show_errors_in_one_line()
     names = sorted(hosts - HERE) or ["127.0.0.1" if args.host in ALL_INTERFACES else args.host]
     addresses = ", ".join(f"http://{in_address(name)}:{port}" for name in names)
-    display.make_console().print(f"Open {addresses} in a browser. Ctrl-C ends the server.", soft_wrap=True)
-    sys.stdout.flush()
-    with contextlib.suppress(KeyboardInterrupt):
-        uvicorn.Server(config).run(sockets=[listening])
+    where = f"Open {addresses} in a browser."
+    serve(app, [listening], where, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1)
     return 0
 
 

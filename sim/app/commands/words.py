@@ -26,12 +26,11 @@ from typing import Literal
 import numpy as np
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError, EpisodeError
 from sim.core.goals import GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, CameraModel
-from sim.core.vocabulary import UNSEEN, vocabulary
+from sim.core.vocabulary import UNSEEN, counted, vocabulary
 from sim.env.scene import Scene
 from sim.episodes.chains import ChainDrawer
 from sim.episodes.descriptions import Descriptions
@@ -122,16 +121,10 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
                 break
             for floor_z_m in rng.permutation(storeys_of(task)).tolist():
                 reached = len(task.truth.region(goal.text, floor_z_m).footprints)
-                if not reached:
-                    continue
-                try:
-                    drawn = drawer.draw(Ask(goal.text, floor_z_m, reached), len(episodes), rng)
-                except EpisodeError:
-                    continue
-                if drawn.meets_rule:
-                    goals = (goal,) if goal.camera is not None else ()
-                    episode_id = f"{house}_{len(episodes)}"
-                    episodes.append(Episode(episode_id, house, goal.text, drawn.pose, drawn.distance_m, goals))
+                ask, goals = Ask(goal.text, floor_z_m, reached), (goal,) if goal.camera is not None else ()
+                episode = _started(drawer, ask, house, len(episodes), rng, goals) if reached else None
+                if episode is not None:
+                    episodes.append(episode)
                     break
     finally:
         drawer.close()
@@ -142,8 +135,7 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
 def _chains(scene: Scene, drawer: StartDrawer, house: str, count: int, rng: np.random.Generator) -> list[Episode]:
     """Returns chains of goals in one house."""
     task, episodes = scene.task, list[Episode]()
-    objects = [item for item in task.truth.meaning.objects if _may_be_asked(item)]
-    rng.shuffle(objects)  # type: ignore[arg-type]
+    objects = _objects(scene, rng)
     goals = {kind: list(listed(scene, objects, rng)) for kind, listed in KINDS.items()}
     drawers = [ChainDrawer(task, goals, floor_z_m) for floor_z_m in storeys_of(task)]
     for turn in range(_MAX_DRAWS * count):
@@ -154,15 +146,23 @@ def _chains(scene: Scene, drawer: StartDrawer, house: str, count: int, rng: np.r
         if not chain:
             continue
         floor_z_m, goal = storeys_of(task)[turn % len(drawers)], chain[0].text
-        reached = len(task.truth.region(goal, floor_z_m).footprints)
-        try:
-            drawn = drawer.draw(Ask(goal, floor_z_m, reached), len(episodes), rng)
-        except EpisodeError:
-            continue
-        if drawn.meets_rule:
-            name = f"{house}_{len(episodes)}"
-            episodes.append(Episode(name, house, goal, drawn.pose, drawn.distance_m, chain))
+        ask = Ask(goal, floor_z_m, len(task.truth.region(goal, floor_z_m).footprints))
+        episode = _started(drawer, ask, house, len(episodes), rng, chain)
+        episodes += [] if episode is None else [episode]
     return episodes
+
+
+def _started(
+    drawer: StartDrawer, ask: Ask, house: str, number: int, rng: np.random.Generator, goals: tuple[GoalSpec, ...]
+) -> Episode | None:
+    """Returns an episode from a random start; None: no start of the recipe was found."""
+    try:
+        drawn = drawer.draw(ask, number, rng)
+    except EpisodeError:
+        return None
+    if not drawn.meets_rule:
+        return None
+    return Episode(f"{house}_{number}", house, ask.goal, drawn.pose, drawn.distance_m, goals)
 
 
 def _categories(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> Iterable[GoalSpec]:
@@ -191,8 +191,7 @@ def _some_pictures(scene: Scene, objects: Sequence[HouseObject], rng: np.random.
 
 def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> Iterator[GoalSpec]:
     """Yields the goals of a house in random order."""
-    objects = [item for item in scene.task.truth.meaning.objects if _may_be_asked(item)]
-    rng.shuffle(objects)  # type: ignore[arg-type]
+    objects = _objects(scene, rng)
     if args.kind == "pictures":
         yield from _pictures(scene, objects, rng)
     else:
@@ -226,8 +225,15 @@ def _texts(args: Args, scene: Scene, objects: Sequence[HouseObject], rng: np.ran
     return [words[int(rng.integers(len(words)))] for words in others if words]
 
 
-def _may_be_asked(item: HouseObject) -> bool:
-    return item.is_goal and item.size_m >= _MIN_SIZE_M and item.name not in _UNASKED and bool(item.facts.name)
+def _objects(scene: Scene, rng: np.random.Generator) -> list[HouseObject]:
+    """Returns the objects of a house that may be asked for, in random order."""
+    objects = [
+        item
+        for item in scene.task.truth.meaning.objects
+        if item.is_goal and item.size_m >= _MIN_SIZE_M and item.name not in _UNASKED and item.facts.name
+    ]
+    rng.shuffle(objects)  # type: ignore[arg-type]
+    return objects
 
 
 def _synonyms(name: str) -> list[str]:

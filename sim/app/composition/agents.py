@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Protocol, cast
 
 from sim.app.bridges.process_command import ProcessConfig, fault_of_namespaces, is_bounded
 from sim.app.composition.imports import import_attribute
-from sim.app.evaluation.own_code import place_of, text_of
+from sim.app.evaluation.own_code import described
 from sim.app.evaluation.watch import FACTORY_S, is_stop, marked
 from sim.app.options import HABITAT, is_process
 from sim.app.services.vlm import agent as vlm
@@ -209,8 +209,7 @@ def build_agent(
             ) from None
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
-        reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
-        raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
+        raise ConfigError(f"Agent '{name}' cannot be built: {described(error, below=__file__)}") from error
 
 
 def free_agent(agent: Agent | None) -> None:

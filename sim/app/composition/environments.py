@@ -11,7 +11,7 @@ from sim.app.options import RunOptions
 from sim.core.errors import ConfigError, did_you_mean
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES
-from sim.core.vocabulary import vocabulary
+from sim.core.vocabulary import counted, vocabulary
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
@@ -133,7 +133,7 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
         raise ConfigError(f"House '{house}' has no episode with a goal that the agent knows: {', '.join(known)}.")
     if len(episodes) < options.episodes:
         raise ConfigError(
-            f"House '{house}' has {len(episodes)} different episode{'' if len(episodes) == 1 else 's'} with "
+            f"House '{house}' has {counted(len(episodes), 'different episode')} with "
             f"this start and goal, but --episodes is {options.episodes} (by default {RunOptions.episodes}); give "
             f"--episodes {len(episodes)}, or --noise realsense."
         )

@@ -19,24 +19,21 @@ from sim.core.errors import ConfigError, did_you_mean
 
 
 class _TooLong(BaseException):
-    """An import took longer than the limit; it is not an `Exception`, which handlers in the module could catch."""
-
-    def __init__(self, limit_s: float) -> None:
-        super().__init__(f"the import did not end within {limit_s:g} s")
+    """An import took longer than `FACTORY_S`; it is not an `Exception`, which handlers in the module could catch."""
 
 
 @contextlib.contextmanager
-def _limited(limit_s: float) -> Iterator[None]:
-    """Raises `_TooLong` in the `with` block after `limit_s`; only in the main thread, where Python handles signals."""
+def _limited() -> Iterator[None]:
+    """Raises `_TooLong` in the block after `FACTORY_S`; only in the main thread, where Python handles signals."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
 
     def stop(number: int, frame: FrameType | None) -> None:
-        raise _TooLong(limit_s)
+        raise _TooLong(f"the import did not end within {FACTORY_S:g} s")
 
     before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, limit_s)
+    signal.setitimer(signal.ITIMER_REAL, FACTORY_S)
     try:
         yield
     finally:
@@ -91,7 +88,7 @@ def import_attribute(
         sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
     folder = os.getcwd()
     try:
-        with _limited(FACTORY_S):
+        with _limited():
             module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
         if error.name is None or f"{module_name}.".startswith(f"{error.name}."):

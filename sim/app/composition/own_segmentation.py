@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.composition.imports import import_attribute
-from sim.app.evaluation.own_code import place_of, text_of
+from sim.app.evaluation.own_code import described
 from sim.app.evaluation.watch import is_stop
 from sim.core.errors import AgentError, ConfigError, ObjectNavError
 from sim.core.interface import (
@@ -79,8 +79,7 @@ def built(name: str, own: SegmentationSpec, *, camera: CameraModel, **others: ob
     except BaseException as error:
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
-        reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
-        raise ConfigError(f"Segmentation '{name}' cannot be built: {reason}") from error
+        raise ConfigError(f"Segmentation '{name}' cannot be built: {described(error, below=__file__)}") from error
     if not any(callable(getattr(segmenter, method, None)) for method in _METHODS[:2]):
         raise ConfigError(f"Segmentation '{name}': {type(segmenter).__name__} has no method scores or posteriors.")
     return OwnSegmenter(name, segmenter, own.spec, camera)
@@ -258,9 +257,8 @@ class OwnSegmenter:
         except BaseException as error:
             if is_stop(error):
                 raise
-            reason = f"{type(error).__name__}: {text_of(error)}"
-            place = place_of(error, below=__file__)
-            raise AgentError(f"Segmentation '{self._name}', {method}: {reason}{place}") from error
+            reason = described(error, below=__file__)
+            raise AgentError(f"Segmentation '{self._name}', {method}: {reason}") from error
 
     def _refuse(self, method: str, what: str) -> NoReturn:
         raise AgentError(f"Segmentation '{self._name}': {method} returned {what}.")

@@ -9,7 +9,6 @@ from typing import Any
 
 from rich.console import Console
 
-from sim.app.analysis import display
 from sim.app.analysis.progress import ProgressReport
 from sim.app.composition import RUNNER
 from sim.app.composition.agents import notes_on
@@ -23,6 +22,7 @@ from sim.app.evaluation.summary import summary_of
 from sim.app.evaluation.workers import RunnerSpec
 from sim.app.options import RunOptions
 from sim.core.geometry.compiling import choose_cache, must_compile
+from sim.core.vocabulary import counted
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
 from sim.episodes.splits import load_split
@@ -73,19 +73,15 @@ def run_missing(
             console.print(f"Episodes that ended with an error and are run again: {len(again)}.")
         todo = [episode for episode in episodes if episode.episode_id not in done]
         console.print(
-            f"{options.agent}, {display.counted(len(episodes), 'episode')} of {split['name']} "
+            f"{options.agent}, {counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {versions['gl_renderer']}; "
             f"segmentation: {segmentation_of(record)}; results in {options.out}"
         )
-        for note in notes_on(options.agent, setup.config.agent):
-            console.print(note, soft_wrap=True)
-        for note in filter(None, (setup.borrowed_parameters, setup.missing_calibration)):
+        for note in _notes_on(setup):
             console.print(note, soft_wrap=True)
         _report_resumed(run, len(episodes), len(todo), code, console)
-        if todo and must_compile():
-            console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
-            if (cache := choose_cache()) is not None:
-                console.print(f"Neither the installation nor a home folder can be written: {cache} keeps the result.")
+        for note in _notes_on_compilation() if todo else ():
+            console.print(note)
         spec = RunnerSpec(runner, setup)
         longest = max((len(episode.specs) for episode in todo), default=1) * setup.config.task.max_steps
         progress = ProgressReport(console, total=len(todo), max_steps=longest)
@@ -120,6 +116,20 @@ def _require_own_lines(options: RunOptions, run: RunDirectory[EpisodeResult], ep
         drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}(~\d+)?", line.episode_id))
         known |= {line.episode_id: (options.house.stem, options.goal or line.goal) for line in drawn}
     run.require_of(known)
+
+
+def _notes_on(setup: Setup) -> Iterator[str]:
+    """Yields sentences about the agent of a run and its segmentation."""
+    yield from notes_on(setup.options.agent, setup.config.agent)
+    yield from filter(None, (setup.borrowed_parameters, setup.missing_calibration))
+
+
+def _notes_on_compilation() -> Iterator[str]:
+    """Yields sentences about the code that numba has to compile; none if all is in its cache."""
+    if must_compile():
+        yield "This is the first run here: numba compiles the agent and the sensors, up to a minute."
+        if (cache := choose_cache()) is not None:
+            yield f"Neither the installation nor a home folder can be written: {cache} keeps the result."
 
 
 def _report_resumed(run: RunDirectory[EpisodeResult], total: int, todo: int, code: str, console: Console) -> None:

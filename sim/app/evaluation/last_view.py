@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import cv2
-
 from sim.core.files import episode_file, write_atomically
 from sim.core.interface import ConfigError
+from sim.core.pictures import jpeg_of
 from sim.env.objectnav import ObjectNavEnv
 
 FOLDER = "pictures"
@@ -33,10 +32,8 @@ def write_last_view(env: ObjectNavEnv, run: Path, episode_id: str) -> None:
     """
     world = env.scene.world
     rgb = env.scene.camera.render(world.data, world.camera_pose, ("rgb",))["rgb"]
-    written, jpeg = cv2.imencode(".jpg", cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, QUALITY])
-    assert written
     file = picture_file(run, episode_id)
     try:
-        write_atomically(file, jpeg.tobytes())
+        write_atomically(file, jpeg_of(rgb, QUALITY))
     except OSError as error:
         raise ConfigError(f"Cannot write the picture '{file}': {error.strerror}.") from None

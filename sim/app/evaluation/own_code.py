@@ -39,6 +39,11 @@ def place_of(error: BaseException, *, below: str) -> str:
     return ""
 
 
+def described(error: BaseException, *, below: str) -> str:
+    """Returns "ValueError: its message (mine/agent.py, line 12)"; `below` as for `place_of`."""
+    return f"{type(error).__name__}: {text_of(error)}{place_of(error, below=below)}"
+
+
 def text_of(error: BaseException) -> str:
     """Returns an error's message in one line of at most `MAX_CHARACTERS`, even if the error's class cannot print it."""
     try:

@@ -33,6 +33,7 @@ from sim.core.reading import (  # fmt: skip
     reason_of,
     sha256_of,
 )
+from sim.core.vocabulary import counted
 from sim.task.result import READ_BY, EpisodeResult
 
 IDENTITY = ("agent", "semantics", "seed")
@@ -146,7 +147,7 @@ class RunDirectory(Generic[LineT]):
             self._write_or_compare_config()
             self.lines: list[LineT] = self._read_and_heal()
             self._places = {line.episode_id: place for place, line in enumerate(self.lines)}
-            self._open(self._content())
+            self._open(read_bytes(self._file, what="Results", most=MAX_LINES_BYTES) if self._file.exists() else b"")
         except BaseException:
             self._lock.close()
             raise
@@ -180,7 +181,7 @@ class RunDirectory(Generic[LineT]):
         before = [text.partition("+")[2] for text in codes if text]
         now = code.partition("+")[2]
         if now and all(before) and before and now not in before:
-            number = f"{len(kept)} episode" + "s" * (len(kept) != 1)
+            number = counted(len(kept), "episode")
             raise ConfigError(
                 f"Your code ({self.config.get('agent')}) has changed since it ran {number} in --out '{self.path}' "
                 f"(code {before[-1]}, now {now}). To run all episodes with the new code, give another --out; to keep "
@@ -194,7 +195,7 @@ class RunDirectory(Generic[LineT]):
             episodes: house and goal by id.
         """
         for number, line in enumerate(self.lines, start=1):
-            where = f"Results '{self.path / 'results.jsonl'}', line {number}"
+            where = f"Results '{self._file}', line {number}"
             if line.episode_id not in episodes:
                 raise ConfigError(f"{where}: '{line.episode_id}' is not an episode of this run; choose another folder.")
             house, goal = episodes[line.episode_id]
@@ -204,19 +205,18 @@ class RunDirectory(Generic[LineT]):
 
     def _read_and_heal(self) -> list[LineT]:
         """Returns the lines of earlier processes; an incomplete last line is cut off the file."""
-        file = self.path / "results.jsonl"
-        lines = read_result_lines(file, self.line_type)
+        lines = read_result_lines(self._file, self.line_type)
         for number, line in enumerate(lines.values, start=1):
             values = line.as_json()
             for key in IDENTITY:
                 if key in values and key in self.config and values[key] != self.config[key]:
                     raise ConfigError(
-                        f"Results '{file}', line {number}: {key} is {field_text(values[key])}, but this run has "
+                        f"Results '{self._file}', line {number}: {key} is {field_text(values[key])}, but this run has "
                         f"{field_text(self.config[key])}; choose another folder."
                     )
         if lines.torn:
             self.healed = lines.torn
-            with open_to_grow(file, "r+b") as stream:
+            with open_to_grow(self._file, "r+b") as stream:
                 stream.truncate(lines.whole_bytes)
         return lines.values
 
@@ -239,10 +239,6 @@ class RunDirectory(Generic[LineT]):
             write_atomically(self._file, content, sync=True)
             self._open(content)
         self._require_untouched(new="")
-
-    def _content(self) -> bytes:
-        """Returns the content of the file of results; empty if it does not exist."""
-        return read_bytes(self._file, what="Results", most=MAX_LINES_BYTES) if self._file.exists() else b""
 
     def _open(self, content: bytes) -> None:
         """Opens the file of results to append lines; `content` is its content so far."""
@@ -334,7 +330,7 @@ class RunDirectory(Generic[LineT]):
         file = self.path / "config.json"
         config = json.loads(json.dumps(dict(self.config)))
         if not file.exists():
-            if (self.path / "results.jsonl").exists():
+            if self._file.exists():
                 raise ConfigError(f"--out '{self.path}' has results but no config.json; choose another folder.")
             self._made_config = True
             _write_json(file, config)  # it is on the disk before the first line

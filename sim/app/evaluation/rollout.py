@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, UnsetType
 
-from sim.app.evaluation.own_code import MAX_CHARACTERS, one_line, place_of, text_of
+from sim.app.evaluation.own_code import MAX_CHARACTERS, described, one_line, text_of
 from sim.app.evaluation.watch import count_steps, is_stop, marked
 from sim.app.viewers.viewer import Moment, Viewer
 from sim.core.errors import AgentError, PhysicsError, debug
@@ -181,8 +181,7 @@ def ask(where: str, call: Callable[[], T]) -> T:
             traceback.print_exc()
         if isinstance(error, AgentError):  # a part of the agent or a bridge raised it; its message names the place
             raise AgentError(f"{where}: {text_of(error)}") from error
-        reason = f"{type(error).__name__}: {text_of(error)}"
-        raise AgentError(f"{where}: {reason}{place_of(error, below=__file__)}") from error
+        raise AgentError(f"{where}: {described(error, below=__file__)}") from error
 
 
 def give_next_goal(agent: Agent, goal: str, seed: int, where: str) -> None:

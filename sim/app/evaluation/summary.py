@@ -9,6 +9,7 @@ from typing import Any
 
 from sim.app.evaluation.intervals import MIN_EPISODES, estimate, replicate_spread
 from sim.app.evaluation.results import RunRecord, segmentation_of
+from sim.core.vocabulary import counted
 from sim.episodes.replicates import episode_of, replicate_number
 from sim.task.result import METRICS, EpisodeResult, metrics_for
 
@@ -80,7 +81,7 @@ def few_episodes(count: int) -> str:
     """Returns the warning of a summary of too few episodes; "" for enough."""
     if not 0 < count < MIN_EPISODES:
         return ""
-    return f"Warning: {count} episode{'s' * (count > 1)}; with fewer than {MIN_EPISODES}, intervals are rough."
+    return f"Warning: {counted(count, 'episode')}; with fewer than {MIN_EPISODES}, intervals are rough."
 
 
 def _replicates(results: Sequence[EpisodeResult], episodes: Sequence[str]) -> dict[str, Any]:

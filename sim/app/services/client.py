@@ -29,7 +29,8 @@ from sim.core.reading import printable, read_bytes, reason_of
 _log = logging.getLogger(__name__)
 T = TypeVar("T")
 MAX_BYTES = 1 << 28
-"""Longest reply, and the most that an NPZ file of a request expands to."""
+"""Longest request and reply, and the most that an NPZ file of a request expands to: a frame of the largest camera has 9
+bytes a pixel."""
 WAIT_S = 0.5
 """Time before a request is repeated."""
 JSON = "application/json"

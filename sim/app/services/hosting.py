@@ -1,11 +1,16 @@
-"""What every HTTP server of this project needs: the packages, a socket, and errors that stay one line of the log."""
+"""Runs the HTTP servers of this project; each error is one line of their log."""
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import logging
 import socket
+import sys
+from collections.abc import Sequence
+from typing import Any
 
+from sim.app.analysis.display import make_console
 from sim.core import invocation
 from sim.core.errors import ConfigError, debug
 from sim.core.reading import printable
@@ -40,11 +45,25 @@ def listen(host: str, port: int) -> socket.socket:
     return listening
 
 
-def show_errors_in_one_line() -> None:
-    """Shortens the log of a server that `uvicorn.Config` has set up."""
+def serve(app: Any, sockets: Sequence[socket.socket], where: str, **options: Any) -> None:
+    """Serves an ASGI application until Ctrl-C.
+
+    Args:
+        app: the application.
+        sockets: listening sockets, see `listen`.
+        where: a sentence on the addresses, which is printed first.
+        options: further ones of `uvicorn.Config`.
+    """
+    import uvicorn
+
+    config = uvicorn.Config(app, log_level="warning", access_log=False, **options)
     for handler in (*logging.getLogger("uvicorn").handlers, logging.lastResort):  # of all loggers, uvicorn's and others
         if handler is not None:
             handler.addFilter(in_one_line)
+    make_console().print(f"{where} Ctrl-C ends the server.", soft_wrap=True)
+    sys.stdout.flush()
+    with contextlib.suppress(KeyboardInterrupt):
+        uvicorn.Server(config).run(sockets=list(sockets))
 
 
 def in_one_line(record: logging.LogRecord) -> bool:

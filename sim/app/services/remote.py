@@ -188,7 +188,7 @@ class HttpSegmenter:
     def _by_vlfm(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> _Seen:
         del depth
         height, width = rgb.shape[:2]
-        image = base64.b64encode(cv2.imencode(".png", rgb)[1].tobytes()).decode()
+        image = _png(rgb)
         caption = " . ".join(self._words) + " ."
         question = {"image": image, "caption": caption, "box_threshold": self._config.box_threshold}
         found, read = self._json("/gdino", question, read_boxes), functools.partial(read_mask, shape=(height, width))
@@ -202,7 +202,7 @@ class HttpSegmenter:
 
     def _by_coco(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> _Seen:
         del depth
-        image = base64.b64encode(cv2.imencode(".png", rgb[..., ::-1])[1].tobytes()).decode()
+        image = _png(rgb[..., ::-1])
         shape = rgb.shape[0], rgb.shape[1]
         read = functools.partial(read_annotations, shape=shape)
         return self._painted(self._json("", {"image": image, "words": self._words}, read), shape)
@@ -258,6 +258,11 @@ class HttpSegmenter:
             host = f"[{parts.hostname}]" if ":" in (parts.hostname or "") else parts.hostname
             parts = parts._replace(netloc=f"{host}:{parts.port + offset}")
         return urllib.parse.urlunsplit(parts._replace(path=parts.path.rstrip("/") + path))
+
+
+def _png(picture: NDArray[np.uint8]) -> str:
+    """Returns a picture (h, w, 3), whose channels OpenCV takes as BGR, as base64 of a PNG file."""
+    return base64.b64encode(cv2.imencode(".png", picture)[1].tobytes()).decode()
 
 
 def painted(

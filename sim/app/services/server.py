@@ -30,6 +30,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
+from sim.app.services.client import MAX_BYTES
 from sim.app.services.detectors import Detector, NetworkDetector, Segment, detections, mask_in, phrases_of, share_of
 from sim.app.services.forms import posteriors_bytes, read_view
 from sim.app.services.frames import MAX_FRAMES, Frame, Shelf, UnknownPictureError
@@ -43,8 +44,6 @@ T = TypeVar("T")
 Corners = tuple[float, float, float, float]
 """A box: left, top, right and bottom edge."""
 _BYTES = "application/octet-stream"
-MAX_BYTES = 1 << 28
-"""Longest request: a frame of the largest camera has 9 bytes a pixel."""
 BOX_THRESHOLD = 0.35
 """Least score of GroundingDINO's boxes if the request states none."""
 CONFIDENCE = 0.25

@@ -15,7 +15,6 @@ from pathlib import Path
 
 import msgspec
 
-from sim.app.analysis.display import counted
 from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, episodes_of, mean_cell
 from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.submissions.checks import isolation_text, truth_of
@@ -24,6 +23,7 @@ from sim.app.submissions.report import Report
 from sim.app.submissions.sealing import Origin
 from sim.core.errors import ConfigError
 from sim.core.files import csv_text
+from sim.core.vocabulary import counted
 from sim.task.result import EpisodeResult
 
 MIN_EPISODES = 50

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.viewers.topview import BLOCKED, FREE, INSTANCE, OBSTACLE, PATH, ROBOT
-from sim.core.vocabulary import plain
+from sim.core.vocabulary import counted, plain
 from sim.episodes.episode import Episode
 from sim.task.objectnav import Task
 
@@ -38,9 +38,8 @@ def draw_episode_map(task: Task, episodes: Sequence[Episode]) -> Picture:
     ]
     picture = np.full((TITLE_PX + HEIGHT_PX, sum(tile.shape[1] for tile in tiles), 3), 255, np.uint8)
     picture[TITLE_PX:] = np.hstack(tiles)
-    count = f"{len(episodes)} episode" + ("" if len(episodes) == 1 else "s")
     colours = "starts and headings blue, goals green, obstacles dark grey, too narrow or outside beige"
-    text = f"{episodes[0].house}: {count}; {colours}"
+    text = f"{episodes[0].house}: {counted(len(episodes), 'episode')}; {colours}"
     size = min(0.5, 0.5 * (picture.shape[1] - 2 * MARGIN_PX) / cv2.getTextSize(text, _FONT, 0.5, 1)[0][0])
     cv2.putText(picture, text, (MARGIN_PX, 20), _FONT, size, ROBOT, 1, cv2.LINE_AA)
     return picture

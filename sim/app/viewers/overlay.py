@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import cv2
 import numpy as np
@@ -29,7 +30,7 @@ from sim.app.viewers.palette import PALETTE, colour_segmentation
 from sim.app.viewers.text import BOLD, NORMAL, text_width, wrapped, write
 from sim.app.viewers.viewer import Colour, Moment
 from sim.core.interface import MPCAT40, MPCAT40_ID, CameraModel, Perceived
-from sim.core.vocabulary import in_words, with_article
+from sim.core.vocabulary import counted, in_words, with_article
 from sim.core.wishes import categories_of
 from sim.task.explanations import ACTION_WORDS, Outcome
 from sim.task.objectnav import Task
@@ -194,9 +195,9 @@ class FrameComposer:
     def add_outcome(self, frame: Picture, info: Mapping[str, object]) -> None:
         """Writes the outcome of the action into a frame of `compose`: collision and the counts so far."""
         write(frame, str(info["episode_id"]), (890, 26), 230, 14, (170, 174, 182))
-        distance_m, count = info["distance_to_goal"], info["collisions"]
+        distance_m = info["distance_to_goal"]
         to_go = "no path to the goal" if distance_m is None else f"{distance_m:.1f} m to go"
-        collisions = f"{count} collision" + ("" if count == 1 else "s")
+        collisions = counted(cast(int, info["collisions"]), "collision")
         write(frame, f"driven {info['path_length']:.1f} m, {to_go}", (self._plan_left, _STATE_TOP + 3), MAP_PX, 14, INK)
         write(frame, collisions, (self._plan_left, _STATE_TOP + 20), MAP_PX, 14, ALARM if info["collided"] else INK)
         if info["collided"]:

@@ -47,6 +47,7 @@ FOLDER = "rerun"
 PORT = 9876
 """The port of Rerun's viewer."""
 POINT_STRIDE_PX = 8
+"""Every n-th row and column of the depth image gives points."""
 IMAGE_STRIDE_PX = 2
 """Depth and segmentation are stored at half size; they are 6 times as large as the compressed colour image."""
 MAP_PX = 480
@@ -222,10 +223,8 @@ class RerunLog:
         path = np.column_stack([trajectory.positions_m, trajectory.poses[:, 3] + 0.02])
         self._stream.log("world/path", rr.LineStrips3D([path], colors=[(32, 84, 190)], radii=0.015))
         start = env.episode.start
-        gps = np.asarray(moment.observation["gps"], np.float64)
-        cos, sin = math.cos(start.yaw_rad), math.sin(start.yaw_rad)
-        x_m, y_m = start.x_m + cos * gps[0] - sin * gps[1], start.y_m + sin * gps[0] + cos * gps[1]
-        self._believed.append((x_m, y_m, start.floor_z_m + 0.03))
+        forward_m, left_m = moment.observation["gps"].tolist()
+        self._believed.append((*start.place_of(forward_m, left_m), start.floor_z_m + 0.03))
         self._stream.log("world/believed", rr.LineStrips3D([self._believed], colors=[(228, 28, 130)], radii=0.01))
         if len(trajectory.contacts):
             stops = np.column_stack([trajectory.contacts[:, 1:], np.full(len(trajectory.contacts), here[2] + 0.4)])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 
 import anyio.to_thread
+from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 
 from sim.core.errors import ObjectNavError
@@ -25,9 +26,13 @@ class Json(JSONResponse):
         return as_ascii(content).encode("ascii")
 
 
-async def or_404(answer: Callable[[], Response]) -> Response:
-    """Runs a function in a thread and returns its response; after an error of this project, one with status 404."""
-    try:
-        return await anyio.to_thread.run_sync(answer)
-    except ObjectNavError as error:
-        return PlainTextResponse(printable(str(error)), 404)
+def in_thread(answer: Callable[[Request], Response]) -> Callable[[Request], Awaitable[Response]]:
+    """Returns an endpoint that runs a function in a thread; an error of this project is answered with status 404."""
+
+    async def respond(request: Request) -> Response:
+        try:
+            return await anyio.to_thread.run_sync(answer, request)
+        except ObjectNavError as error:
+            return PlainTextResponse(printable(str(error)), 404)
+
+    return respond

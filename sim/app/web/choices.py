@@ -26,6 +26,7 @@ from sim.core.errors import ConfigError, HouseError
 from sim.core.goals import NO_GOAL
 from sim.core.interface import GOAL_CATEGORIES
 from sim.core.option_types import meanings
+from sim.core.pictures import jpeg_of
 from sim.core.reading import convert
 from sim.core.wishes import parse_wish
 from sim.episodes.replicates import episode_of
@@ -41,6 +42,8 @@ Goals = Mapping[str, Mapping[str, list[str]]]
 """The ids of the episodes by house and goal; the lists of a house file are empty, because its episodes are drawn."""
 MAX_PICTURES = 16
 """Pictures of houses that are kept."""
+JPEG_QUALITY = 95
+"""Of these pictures."""
 _PLAIN_TEXT = re.compile(r"[\w-]*")
 
 
@@ -117,12 +120,11 @@ class Choices:
             if (split, house) not in self._pictures:
                 top = draw_top_to_scale(self._split_of(split).load_house(house))
                 picture = cv2.resize(top.picture, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
-                jpeg = cv2.imencode(".jpg", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))[1].tobytes()
                 if len(self._pictures) >= MAX_PICTURES:
                     self._pictures.popitem(last=False)
-                self._pictures[split, house] = {
-                    "jpeg": base64.b64encode(jpeg).decode(), "middle_m": top.middle_m, "m_per_px": 2.0 * top.m_per_px
-                }  # fmt: skip
+                jpeg = base64.b64encode(jpeg_of(picture, JPEG_QUALITY)).decode()
+                about = {"jpeg": jpeg, "middle_m": top.middle_m, "m_per_px": 2.0 * top.m_per_px}
+                self._pictures[split, house] = about
             return self._pictures[split, house]
 
     def _split_of(self, split: str) -> Split:

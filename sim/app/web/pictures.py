@@ -15,6 +15,7 @@ from sim.app.viewers.palette import PALETTE
 from sim.app.viewers.topview import TopView
 from sim.app.viewers.viewer import Colour, Moment
 from sim.core.interface import MPCAT40
+from sim.core.pictures import jpeg_of
 from sim.core.vocabulary import in_words
 from sim.env.scene import Scene
 
@@ -64,7 +65,7 @@ class Pictures:
                 make["predicted"] = lambda: overlay.segmentation_picture(_small(categories), goal)
         for name in NAMES:
             if name in names and name in make:
-                drawn[name] = _jpeg(make[name]())
+                drawn[name] = jpeg_of(make[name](), _JPEG_QUALITY)
         return drawn
 
     def legends(self) -> dict[str, list[tuple[str, str]]]:
@@ -111,9 +112,3 @@ def _in_css(legend: tuple[tuple[str, Colour], ...]) -> list[tuple[str, str]]:
 def _small(image: NDArray) -> NDArray:
     """Returns an image of numbers at the size of the small pictures, without interpolation."""
     return np.asarray(cv2.resize(image, _SMALL, interpolation=cv2.INTER_NEAREST))
-
-
-def _jpeg(picture: NDArray[np.uint8]) -> bytes:
-    done, encoded = cv2.imencode(".jpg", picture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])
-    assert done
-    return encoded.tobytes()

@@ -23,7 +23,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from sim.app.web.answers import Json, as_ascii, or_404
+from sim.app.web.answers import Json, as_ascii, in_thread
 from sim.app.web.choices import Choices
 from sim.app.web.controls import EpisodeRequest
 from sim.app.web.driven import DrivenRuns
@@ -240,65 +240,50 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
     async def live(socket: WebSocket) -> None:
         await _live(hub, make_request, socket)
 
-    async def offered(request: Request) -> Response:
-        return Json(choices.as_json())
+    def run_of(request: Request) -> str:
+        return request.path_params["run"]
 
-    async def all_runs(request: Request) -> Response:
-        return await or_404(lambda: Json(runs.as_json()))
+    def asked(request: Request, *names: str) -> list[str]:
+        return [request.query_params.get(name, "") for name in names]
 
-    async def one_run(request: Request) -> Response:
-        return await or_404(lambda: Json(runs.episodes(request.path_params["run"])))
-
-    async def house(request: Request) -> Response:
-        asked = (request.query_params.get(name, "") for name in ("split", "house"))
-        return await or_404(lambda: Json(choices.house_from_above(*asked)))
-
-    async def packed_run(request: Request) -> Response:
-        run = request.path_params["run"]
+    def packed_run(request: Request) -> Response:
+        run = run_of(request)
         name = re.sub(r"[^\w.-]", "_", run, flags=re.ASCII)
         headers = {"content-disposition": f'attachment; filename="{name}.zip"'}
-        return await or_404(lambda: StreamingResponse(runs.packed(run), headers=headers, media_type="application/zip"))
+        return StreamingResponse(runs.packed(run), headers=headers, media_type="application/zip")
 
-    async def delete_run(request: Request) -> Response:
+    def delete_run(request: Request) -> Response:
         if request.headers.get("origin") is None:  # a page of this server always sends it
             return PlainTextResponse("Only the page may delete a run.", 403)
+        runs.delete(run_of(request))
+        return Response(status_code=204)
 
-        def delete() -> Response:
-            runs.delete(request.path_params["run"])
-            return Response(status_code=204)
+    def video(request: Request) -> Response:
+        return FileResponse(runs.video(run_of(request), *asked(request, "episode")), media_type="video/mp4")
 
-        return await or_404(delete)
+    def report(request: Request) -> Response:
+        headers = {"content-security-policy": _REPORT_POLICY}
+        return FileResponse(runs.report(run_of(request)), headers=headers, media_type="text/html")
 
-    async def comparison(request: Request) -> Response:
-        asked = (request.query_params.get(name, "") for name in ("first", "second"))
-        return await or_404(lambda: Json(runs.comparison(*asked)))
-
-    async def video(request: Request) -> Response:
-        run, episode = request.path_params["run"], request.query_params.get("episode", "")
-        return await or_404(lambda: FileResponse(runs.video(run, episode), media_type="video/mp4"))
-
-    async def report(request: Request) -> Response:
-        run, headers = request.path_params["run"], {"content-security-policy": _REPORT_POLICY}
-        return await or_404(lambda: FileResponse(runs.report(run), headers=headers, media_type="text/html"))
-
-    async def linked(request: Request) -> Response:
+    def linked(request: Request) -> Response:
         run, kind, file = (request.path_params[part] for part in ("run", "kind", "file"))
         headers = {"cross-origin-resource-policy": "cross-origin"}  # a sandboxed report has another origin
-        return await or_404(lambda: FileResponse(runs.linked(run, kind, file), headers=headers))
+        return FileResponse(runs.linked(run, kind, file), headers=headers)
 
     routes = [Route(address, _page_file(*about)) for address, about in PAGE_FILES.items()]
-    routes += [
-        Route("/api/choices", offered),
-        Route("/api/runs", all_runs),
-        Route("/api/runs/{run}", one_run),
-        Route("/api/runs/{run}", delete_run, methods=["DELETE"]),
-        Route("/api/house", house),
-        Route("/runs/{run}/run.zip", packed_run),
-        Route("/api/comparison", comparison),
-        Route("/runs/{run}/video", video),
-        Route("/runs/{run}/report.html", report),
-        Route("/runs/{run}/{kind}/{file}", linked),
-    ]
+    answers: dict[str, Callable[[Request], Response]] = {
+        "/api/choices": lambda request: Json(choices.as_json()),
+        "/api/runs": lambda request: Json(runs.as_json()),
+        "/api/runs/{run}": lambda request: Json(runs.episodes(run_of(request))),
+        "/api/house": lambda request: Json(choices.house_from_above(*asked(request, "split", "house"))),
+        "/api/comparison": lambda request: Json(runs.comparison(*asked(request, "first", "second"))),
+        "/runs/{run}/run.zip": packed_run,
+        "/runs/{run}/video": video,
+        "/runs/{run}/report.html": report,
+        "/runs/{run}/{kind}/{file}": linked,
+    }
+    routes += [Route(address, in_thread(answer)) for address, answer in answers.items()]
+    routes.append(Route("/api/runs/{run}", in_thread(delete_run), methods=["DELETE"]))
     return Starlette(
         routes=[*routes, WebSocketRoute("/live", live)],
         middleware=[Middleware(OnlyFromHere, hosts=hosts)],

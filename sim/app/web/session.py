@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Protocol
 
-from sim.app.analysis.display import counted
 from sim.app.cli import USAGE_ERRORS
 from sim.app.composition.agents import free_agent
 from sim.app.composition.driven import HUMAN
@@ -32,7 +31,7 @@ from sim.core.errors import EpisodeError, debug
 from sim.core.goals import NO_GOAL, GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, Action, Agent, Observation, Overridable, StatesTarget
 from sim.core.reading import printable
-from sim.core.vocabulary import in_words, with_article
+from sim.core.vocabulary import counted, in_words, with_article
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates

@@ -11,7 +11,6 @@ demonstrator. The same command continues a killed run: `state.pt` holds weights,
 from __future__ import annotations
 
 import time
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,12 +22,12 @@ from torch import Tensor
 from torch.nn import functional
 
 from sim.core.interface import GOAL_CATEGORIES, Action, ConfigError
-from sim.core.invocation import command
 from sim.core.option_types import Amount, Count, NotNegative, OutFolder, Positive, Seed
 from sim.training.cloned.demonstrations import Demonstration, list_demonstrations, read_demonstration
 from sim.training.figures import empty_figure, require_packages
+from sim.training.plan_split import HELD_BACK, is_held_back
 from sim.training.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.training.training_files import print_next_commands, read_columns
+from sim.training.training_files import print_next_runs, read_columns
 from stubborn.baselines.cloned_input import (
     HEIGHT_PX,
     MOTION,
@@ -40,9 +39,6 @@ from stubborn.baselines.cloned_input import (
     motions,
 )
 from stubborn.baselines.cloned_net import FILES, ClonedNet
-
-HELD_BACK = 10
-"""One of this many houses is held back."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,9 +161,7 @@ def main(args: Args) -> int:
     train, val = read_all(files)
     Trainer(args, train, val, files).run()
     draw_curve(args.out)
-    weights = args.out / "cloned.safetensors"
-    chosen = ("--agent", "cloned", "--semantics", "gt", "--config", f"agent.weights={weights}")
-    print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
+    print_next_runs(args.out / "cloned.safetensors", "cloned", "agent.weights")
     return 0
 
 
@@ -181,8 +175,7 @@ def read_all(files: Sequence[Path]) -> tuple[list[LabelledSteps], list[LabelledS
             printed_s = time.monotonic()
             print(f"{number} of {len(files)} demonstrations read", flush=True)
         demonstration = read_demonstration(file)
-        held_back = zlib.crc32(demonstration.house.encode()) % HELD_BACK == 0
-        (val if held_back else train).append(labelled_steps_of(demonstration, file))
+        (val if is_held_back(demonstration.house) else train).append(labelled_steps_of(demonstration, file))
     if not train or not val:
         raise ConfigError(
             f"{len(train)} demonstrations to train on and {len(val)} held back: both are needed. One house in "
@@ -309,7 +302,7 @@ def draw_curve(out: Path) -> None:
     train, val = (read_columns(out / name) for name in ("train.csv", "val.csv"))
     if not val:
         return
-    figure = empty_figure(9.0, 3.2, what="The curves of a training")
+    figure = empty_figure(9.0, 3.2)
     axes = figure.subplots(1, 2)
     if train:
         axes[0].plot(train["minutes"], train["cross_entropy"], color="0.6", label="training, changes count more")

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import io
 import json
-import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -22,6 +21,7 @@ from sim.core.files import write_atomically
 from sim.core.interface import GOAL_CATEGORIES
 from sim.core.reading import parse_json, read_npz, reason_of
 from sim.homes.plans.plan import house_of
+from sim.training.plan_split import is_held_back
 from sim.training.poni.potentials import Sample, SampleConfig
 from stubborn.exploration.patches import LAYERS
 
@@ -66,7 +66,7 @@ def held_back(file: Path) -> bool:
 
     It depends on the name of the house only, so that the storeys of a house stay together.
     """
-    return zlib.crc32(house_of(file.stem.rsplit("-", 1)[-1]).encode()) % HELD_BACK == 0
+    return is_held_back(house_of(file.stem.rsplit("-", 1)[-1]), HELD_BACK)
 
 
 def plan_of(file: Path) -> str | None:

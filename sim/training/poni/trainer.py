@@ -31,7 +31,7 @@ from sim.training.figures import empty_figure, require_packages
 from sim.training.poni.potential_files import HELD_BACK, SYMMETRIES, Batch, SampleSet, held_back, plan_of, write_samples
 from sim.training.poni.potentials import SampleConfig, samples_of
 from sim.training.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.training.training_files import print_next_commands, read_columns
+from sim.training.training_files import print_next_runs, read_columns
 from stubborn.exploration.poni_net import FILES, MAPS, PoniNet, PoniNetConfig
 
 OBJECT_WEIGHT = 5.0
@@ -82,9 +82,7 @@ def main(args: Args) -> int:
     files = make_samples(args, config)
     Trainer(args, config, files).run()
     draw_curve(args.out)
-    weights = args.out / "poni.safetensors"
-    chosen = ("--agent", "poni", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
-    print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
+    print_next_runs(args.out / "poni.safetensors", "poni", "agent.explorer.weights")
     return 0
 
 
@@ -200,7 +198,7 @@ def draw_curve(out: Path) -> None:
     train, val = (read_columns(out / name) for name in ("train.csv", "val.csv"))
     if not val:
         return
-    figure = empty_figure(11.0, 3.2, what="The curves of a training")
+    figure = empty_figure(11.0, 3.2)
     axes = figure.subplots(1, 3)
     for axis, name in zip(axes, ("area", "objects"), strict=False):
         if train:

@@ -16,6 +16,8 @@ from stubborn.segmentation.checkpoints import load_network, mean_of, save_networ
 from stubborn.segmentation.rednet import RedNet
 
 PREFIX = "step-"
+MAX_RATIO = 10.0
+"""Largest ratio of the weights of two classes."""
 
 
 def pyramid_loss(
@@ -54,17 +56,16 @@ def pyramid_loss(
     return total
 
 
-def root_class_weights(pixels: Float64[np.ndarray, " 41"], *, most: float = 10.0) -> Float32[torch.Tensor, " classes"]:
-    """Returns class weights that are larger for rare categories: share^-0.5, at most `most` times the smallest.
+def root_class_weights(pixels: Float64[np.ndarray, " 41"]) -> Float32[torch.Tensor, " classes"]:
+    """Returns class weights that are larger for rare categories: share^-0.5, at most `MAX_RATIO` times the smallest.
 
     Args:
         pixels: pixels of each mpcat40 category, with void.
-        most: largest ratio of two weights.
     """
     counts = np.asarray(pixels, np.float64)[1:]
     weights = np.where(counts > 0, 1.0 / np.sqrt(np.maximum(counts, 1.0)), 0.0)
     if (counts > 0).any():
-        weights = np.minimum(weights, most * weights[counts > 0].min())
+        weights = np.minimum(weights, MAX_RATIO * weights[counts > 0].min())
         weights = weights / weights[counts > 0].mean()
     return torch.tensor(weights, dtype=torch.float32)
 

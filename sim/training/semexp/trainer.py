@@ -206,7 +206,7 @@ class _Watch(BaseCallback):
 
 def curve(file: Path) -> bytes:
     """Returns a PNG of a training curve: mean steps to first sight over primitive steps, and its running mean."""
-    figure = empty_figure(6.4, 3.2, what="The curves of a training")
+    figure = empty_figure(6.4, 3.2)
     axes = figure.subplots()
     table = {name: np.array(column) for name, column in read_columns(file).items()}
     if table:

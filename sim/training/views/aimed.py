@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,8 @@ RARE: Mapping[str, float] = MappingProxyType(
     }
 )  # fmt: skip
 """Goal categories with too few objects in other views, and how often they are drawn relative to each other."""
-AIMS: Mapping[str, Mapping[str, float]] = MappingProxyType({"rare": RARE})
-"""The objects at which a camera can be aimed."""
+Aim = Literal["rare"]
+"""At what a camera is aimed: `RARE`."""
 DISTANCE_M = (1.0, 3.5)
 """Horizontal distance of the camera from the point of the object that it is aimed at."""
 OFF_AXIS_RAD = 0.45

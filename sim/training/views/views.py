@@ -11,7 +11,7 @@ import contextlib
 import zlib
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, Literal, get_args
 
 import cv2
 import numpy as np
@@ -23,7 +23,7 @@ from sim.core.interface import MPCAT40_ID, CameraModel
 from sim.env.scene import Scene
 from sim.episodes.descriptions import Descriptions
 from sim.houses.labels import Labels
-from sim.training.views.aimed import AIMS, aimed_poses, shows
+from sim.training.views.aimed import RARE, Aim, aimed_poses, shows
 from sim.training.views.coco import annotate
 from sim.training.views.normals import encode_normals, surface_normals
 from sim.training.views.poses import MAX_TRIES, any_pose, mixed_poses, sequence_poses
@@ -34,8 +34,9 @@ BARE_SHARE = 0.97
 """A view is rejected if wall, floor, ceiling and void cover more than this share and its median depth is small."""
 BARE_DEPTH_M = 1.2
 """Median depth below which such a view is rejected: a near wall holds no information."""
-EXTRAS: tuple[str, ...] = ("instances", "normals", "poses")
-"""Members of a view in addition to colour, depth and categories."""
+Extra = Literal["instances", "normals", "poses"]
+"""A member of a view in addition to colour, depth and categories."""
+EXTRAS: tuple[Extra, ...] = get_args(Extra)
 _COLOUR_CAMERA = CameraModel(width_px=160, height_px=120)
 """Camera of the pictures in which the colours of descriptions are measured; small, because they cost the most time."""
 _VIEWS_PER_OBJECT = 12
@@ -72,9 +73,9 @@ def sample_views(
     stem: str,
     record: dict[str, Any],
     block_px: int = 1,
-    extras: Collection[str] = (),
+    extras: Collection[Extra] = (),
     sequence: int | None = None,
-    aim: str | None = None,
+    aim: Aim | None = None,
     styles: Mapping[str, str] | None = None,
     lean: bool = False,
 ) -> Iterator[View]:
@@ -89,7 +90,7 @@ def sample_views(
         block_px: factor by which views are reduced: colour is averaged, all else takes the middle pixel.
         extras: names of `EXTRAS`.
         sequence: number of views of a sequence along one path; bare walls in it are not rejected. None: no sequences.
-        aim: name of `AIMS`: the camera is aimed at objects that are rare in other views. None: it is not.
+        aim: `rare`: the camera is aimed at objects that are rare in other views. None: it is not.
         styles: style of each instance of the house by its name, for the annotations; None: they are not known.
         lean: in a share of the views, the body and its camera lean (`sim.training.views.variation`).
 
@@ -104,7 +105,7 @@ def sample_views(
         raise HouseError(f"House '{name}': the robot fits nowhere, so it cannot be viewed.")
     start_world(scene, space, cells, rng)
     if aim is not None:
-        poses = aimed_poses(scene.world, space, cells, rng, AIMS[aim])
+        poses = aimed_poses(scene.world, space, cells, rng, RARE)
     elif sequence is not None:
         poses = sequence_poses(space, cells, rng, sequence, name)
     else:

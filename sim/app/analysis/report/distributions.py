@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from sim.app.analysis.report.figures import Proportion, Runs, proportion_of
 from sim.task.result import EpisodeResult
 
-NEVER = "never"
 SPL_LABELS = ("failed", *(f"{low / 10:g}-{(low + 1) / 10:g}" for low in range(10)))
 CONFIDENCE_BINS = 10
 
@@ -45,9 +44,10 @@ DISTANCES = Bins((0.0, 4.0, 8.0, 12.0, 16.0, 24.0, 40.0), "m", "no path")
 """Bins of the shortest path."""
 HOUSE_SIZES = Bins((0.0, 60.0, 80.0, 100.0, 125.0, 150.0, 300.0, 500.0), "m²", "size unknown")
 """Bins of the floor area of all rooms of a house."""
-FIRST_SIGHTS = Bins((0.0, 1.0, 10.0, 25.0, 50.0, 100.0, 200.0), "steps", NEVER)
-FIRST_SIGHT_LABELS = ("0", "1-9", "10-24", "25-49", "50-99", "100-199", "200 on", NEVER)
-"""Labels of the bins of `FIRST_SIGHTS`, which are whole numbers."""
+FIRST_SIGHTS = (0, 1, 10, 25, 50, 100, 200)
+"""First number of steps of each bin of the time to first sight."""
+FIRST_SIGHT_LABELS = ("0", "1-9", "10-24", "25-49", "50-99", "100-199", "200 on", "never")
+"""Labels of these bins, and of the one of episodes that never showed the goal."""
 
 
 @dataclass(frozen=True)
@@ -94,10 +94,9 @@ def _spl_bin(result: EpisodeResult) -> int:
 def _sight_bin(result: EpisodeResult) -> int | None:
     if result.gt_explored is None:
         return None
-    step = result.first_seen_step
-    if step is None:
+    if result.first_seen_step is None:
         return len(FIRST_SIGHT_LABELS) - 1
-    return FIRST_SIGHTS.names.index(FIRST_SIGHTS.name(float(step)))
+    return bisect.bisect_right(FIRST_SIGHTS, result.first_seen_step) - 1
 
 
 @dataclass(frozen=True)

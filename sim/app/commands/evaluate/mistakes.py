@@ -24,7 +24,6 @@ from numpy.typing import NDArray
 
 from sim.app import cli
 from sim.app.analysis.comparison import Run, read_run
-from sim.app.analysis.display import counted
 from sim.app.analysis.report.drawings import split_of
 from sim.app.commands.evaluate.own import segmenter_for
 from sim.app.composition.own_segmentation import OwnSegmenter
@@ -36,6 +35,7 @@ from sim.core.files import write_picture
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40, CameraModel, ConfigError
 from sim.core.pictures import tiled
+from sim.core.vocabulary import counted
 from sim.renderer.camera import Camera
 from sim.robot.config import RobotConfig
 from sim.task.failures import CAUSES

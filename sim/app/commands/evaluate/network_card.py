@@ -13,6 +13,7 @@ from jaxtyping import Int64
 from sim.core.files import write_atomically
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
 from sim.core.reading import convert
+from sim.core.vocabulary import counted
 from sim.training.figures import empty_figure
 from sim.training.segmentation.breakdown import Breakdown
 from sim.training.segmentation.evaluation import GOAL_CHANNELS, Confusions, Iou, Reliability
@@ -126,7 +127,7 @@ def _summary(network: Evaluated, measured: Measured, stages: Sequence[Training])
     yield f"| pixel accuracy | {iou.accuracy:.3f} |"
     yield f"| pixel accuracy without calibration | {own.accuracy:.3f} |"
     yield f"| number of views | {measured.views} |"
-    yield f"| time per frame, {network.threads} thread{'s' * (network.threads != 1)} | {measured.frame_ms:.0f} ms |"
+    yield f"| time per frame, {counted(network.threads, 'thread')} | {measured.frame_ms:.0f} ms |"
     yield from (f"| training | {training_text(stage)} |" for stage in stages)
     yield f"| calibration error without calibration | {measured.before.error:.3f} |"
     yield f"| calibration error with calibration | {measured.after.error:.3f} |"
@@ -219,7 +220,7 @@ def draw_confusion(matrix: Int64[np.ndarray, "classes classes"], file: Path) -> 
     Raises:
         ConfigError: matplotlib is not installed.
     """
-    figure = empty_figure(10.5, 7.2, what="The pictures of a card")
+    figure = empty_figure(10.5, 7.2)
     channels = [*GOAL_CHANNELS, *(MPCAT40_ID[name] - 1 for name in BACKGROUND)]
     goals = matrix[GOAL_CHANNELS].astype(np.float64)
     percent = 100.0 * goals / np.maximum(goals.sum(axis=1, keepdims=True), 1.0)
@@ -251,7 +252,7 @@ def draw_curves(trainings: Sequence[Path], file: Path) -> None:
     Raises:
         ConfigError: a folder holds no training, or matplotlib is not installed.
     """
-    figure = empty_figure(9.0, 3.4, what="The pictures of a card")
+    figure = empty_figure(9.0, 3.4)
     left, right = figure.subplots(1, 2)
     begin_h = 0.0
     for folder in trainings:

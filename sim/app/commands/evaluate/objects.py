@@ -20,13 +20,13 @@ from jaxtyping import UInt8
 from numpy.typing import NDArray
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.commands.evaluate.segmentation import BATCH, loader
 from sim.app.composition.segmenters import weights_file
 from sim.app.viewers.palette import with_legend
 from sim.core.files import write_picture
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40
 from sim.core.pictures import tiled
+from sim.core.vocabulary import counted
 from sim.training.segmentation.dataset import GOAL_IDS, LabelledView, list_shards, read_shard, stored_block_px
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network

@@ -35,6 +35,10 @@ GRID_PX = 4
 be compared."""
 
 
+LogitSamples = dict[str, list[tuple[Tensor, Tensor]]]
+"""Logits (k, classes) and true class channels (k,) to which a calibration is fitted, by house."""
+
+
 @dataclass(frozen=True)
 class _Settings:
     """The fields that `--config` sets: `detector.FIELD`."""
@@ -51,10 +55,8 @@ class OwnMeasured:
     breakdown: Breakdown = field(default_factory=Breakdown)
     frames_ms: list[float] = field(default_factory=list)
     """Time of each frame, milliseconds."""
-    samples: dict[str, list[tuple[Float32[np.ndarray, "k classes"], Int64[np.ndarray, " k"]]]] = field(
-        default_factory=dict
-    )
-    """Of a server: what a calibration is fitted to, by house; see `HttpSegmenter.samples`."""
+    samples: LogitSamples = field(default_factory=dict)
+    """Of a server: what a calibration is fitted to; see `HttpSegmenter.samples`."""
 
 
 def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Sequence[str]) -> OwnMeasured:
@@ -85,8 +87,8 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
             _add_view(measured, segmenter, folder.name, view, block_px)
             if isinstance(segmenter.inner, HttpSegmenter):
                 observation, channels = {"rgb": view.rgb, "depth": view.depth_m}, view.semantic.astype(np.int64) - 1
-                sample = segmenter.inner.samples(observation, channels)
-                measured.samples.setdefault(view.record["house"], []).append(sample)
+                logits, truth = map(torch.from_numpy, segmenter.inner.samples(observation, channels))
+                measured.samples.setdefault(view.record["house"], []).append((logits, truth))
     return measured
 
 
@@ -135,8 +137,8 @@ def fitted_calibration(measured: OwnMeasured) -> tuple[Calibration, float, float
     houses = sorted(house for house, parts in measured.samples.items() if any(len(truth) for _, truth in parts))
     if len(houses) < 2:
         raise ConfigError("A calibration needs views of two houses in which the server reports something.")
-    calibration = fit_calibration(*_joined(measured, houses[::2]))
-    logits, truth = _joined(measured, houses[1::2])
+    calibration = fit_calibration(*joined(measured.samples, houses[::2]))
+    logits, truth = joined(measured.samples, houses[1::2])
     losses = (
         torch.nn.functional.cross_entropy(scores, truth)
         for scores in (logits, logits * calibration.scale + calibration.offset)
@@ -145,11 +147,10 @@ def fitted_calibration(measured: OwnMeasured) -> tuple[Calibration, float, float
     return calibration, before, after
 
 
-def _joined(measured: OwnMeasured, houses: Sequence[str]) -> tuple[Tensor, Tensor]:
-    """Returns the samples of some houses."""
-    parts = [sample for house in houses for sample in measured.samples[house]]
-    logits, truth = (np.concatenate([part[i] for part in parts]) for i in range(2))
-    return torch.from_numpy(logits), torch.from_numpy(truth)
+def joined(samples: LogitSamples, houses: Sequence[str]) -> tuple[Tensor, Tensor]:
+    """Returns the logits (k, classes) and the class channels (k,) of some houses."""
+    parts = [part for house in houses for part in samples[house]]
+    return torch.cat([logits for logits, _ in parts]), torch.cat([truth for _, truth in parts])
 
 
 def _channels(segmenter: OwnSegmenter, observation: Observation) -> Int64[np.ndarray, "h w"]:

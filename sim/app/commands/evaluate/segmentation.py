@@ -30,7 +30,7 @@ from torch.utils.data import DataLoader
 
 from sim.app import cli
 from sim.app.commands.evaluate.network_card import Evaluated, Measured, card_text, training_stages, write_card
-from sim.app.commands.evaluate.own import fitted_calibration, measure_own, own_text
+from sim.app.commands.evaluate.own import LogitSamples, fitted_calibration, joined, measure_own, own_text
 from sim.app.composition.segmenters import weights_file
 from sim.app.services.client import is_address
 from sim.core.files import write_atomically
@@ -96,8 +96,8 @@ class Predictions:
     breakdown: Breakdown = field(default_factory=Breakdown)
     calibrated: Confusions = field(default_factory=Confusions)
     """Confusion matrices of calibrated logits, as the agent uses them."""
-    samples: dict[str, list[tuple[Tensor, Tensor]]] = field(default_factory=dict)
-    """Logits (k, classes) and true class channels (k,) of labelled pixels, by house."""
+    samples: LogitSamples = field(default_factory=dict)
+    """Those of labelled pixels."""
     views: int = 0
 
 
@@ -178,9 +178,9 @@ def measure(args: Args, model: RedNet, metadata: Mapping[str, object]) -> Measur
             "--views are of one house only; calibration needs houses to fit and other houses to evaluate."
         )
     if args.calibrate:
-        calibration = fit_calibration(*_joined(seen, houses[::2]))
+        calibration = fit_calibration(*joined(seen.samples, houses[::2]))
         seen = predict(args, model, block_px, calibration)
-    logits, truth = _joined(seen, houses[1::2])
+    logits, truth = joined(seen.samples, houses[1::2])
     before, after = Reliability.empty(), Reliability.empty()
     for reliability, used in ((before, Calibration.of_temperature(1.0)), (after, calibration)):
         scores = (logits * used.scale + used.offset).softmax(dim=1)
@@ -279,12 +279,6 @@ def _add_view(
     pair = some[kept >= 0].clone(), kept[kept >= 0].clone()  # a clone is not an inference tensor
     seen.samples.setdefault(view.record["house"], []).append(pair)
     seen.views += 1
-
-
-def _joined(seen: Predictions, houses: Sequence[str]) -> tuple[Tensor, Tensor]:
-    """Returns the logits (k, classes) and the class channels (k,) of some houses."""
-    pairs = [pair for house in houses for pair in seen.samples[house]]
-    return torch.cat([logits for logits, _ in pairs]), torch.cat([truth for _, truth in pairs])
 
 
 def loader(model: RedNet, views: Sequence[LabelledView], block_px: int, stored_px: int) -> DataLoader:

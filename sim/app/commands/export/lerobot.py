@@ -19,7 +19,6 @@ import tyro
 
 from sim.app import cli
 from sim.app.analysis.comparison import Run, read_run
-from sim.app.analysis.display import counted
 from sim.app.bridges.lerobot.dataset import DatasetWriter
 from sim.app.bridges.lerobot.features import task_of
 from sim.app.bridges.lerobot.replays import Replayer
@@ -27,6 +26,7 @@ from sim.core.errors import ConfigError, EpisodeError
 from sim.core.files import write_atomically
 from sim.core.interface import MOVES
 from sim.core.reading import read_json
+from sim.core.vocabulary import counted
 from sim.task.trajectory import read_trajectory, trajectory_file
 
 ABOUT = "stubborn.json"

@@ -11,17 +11,19 @@ from a view point, accepts nearly the same places as that of docs/task.md.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.bridges.habitat.conversions import CATEGORIES
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError
 from sim.core.files import write_together
+from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40_ID
+from sim.core.vocabulary import counted
 from sim.episodes import habitat
 from sim.episodes.goat import goat_house, ovon_house
 from sim.episodes.reachable_goals import find_reachable_goals
@@ -32,6 +34,8 @@ from sim.world.world import World
 STEP_CELLS = 4
 """Distance of the view points, in cells of the free space (0.025 m)."""
 MAX_VIEW_POINTS = 100_000
+CATEGORIES_OF = {"v1": CATEGORIES["mp3d"], "v2": CATEGORIES["hm3d"]}
+"""The goal categories of each format of ObjectNav."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,44 +56,22 @@ def main(args: Args) -> int:
     """Writes the files; returns the exit status."""
     split = load_split(args.split)
     require_format(args.format, split)
-    if args.format in ("ovon", "goat"):
-        return _write_words(args, split)
-    goals = CATEGORIES["mp3d" if args.format == "v1" else "hm3d"]
-    tables = {
-        "category_to_task_category_id": {goal: number for number, goal in enumerate(goals)},
-        "category_to_mp3d_category_id": {goal: MPCAT40_ID[goal] for goal in goals},
-    }
-    numbers = {episode.episode_id: number for number, episode in enumerate(split.episodes)}
     houses = [house for house in split.houses if any(episode.house == house for episode in split.episodes)]
-    jobs = [(args.split, house) for house in houses]
-    files: dict[Path, bytes | str] = {
-        args.out / f"{args.out.name}.json.gz": habitat.zipped_json({**tables, "episodes": []})
-    }
-    points = count = 0
-    for house, listed in zip(houses, ordered_map(_goals, jobs, workers=args.workers), strict=True):
-        scene = _scene_of(args.split, split, house)
-        episodes = [
-            {
-                "episode_id": str(numbers[episode.episode_id]),
-                "scene_id": scene,
-                "scene_dataset_config": "default",
-                **_start(episode.start),
-                "object_category": episode.goal,
-                "info": {"geodesic_distance": episode.shortest_path_m, "stubborn_id": episode.episode_id},
-                "goals": [],
-            }
-            for episode in split.episodes
-            if episode.house == house and episode.goal in goals
-        ]
-        kept = {habitat.goals_key(house, goal): entries for goal, entries in listed.items() if goal in goals}
-        points += sum(len(entry["view_points"]) for entries in kept.values() for entry in entries)
-        count += len(episodes)
-        content = {**tables, "goals_by_category": kept, "episodes": episodes}
+    jobs = [(args.split, house, args.format) for house in houses]
+    index = _tables(args.format) if args.format in CATEGORIES_OF else {"goals": {}} if args.format == "goat" else {}
+    index_file = args.out / f"{args.out.name}.json.gz"
+    files: dict[Path, bytes | str] = {index_file: habitat.zipped_json({**index, "episodes": []})}
+    episodes = points = 0
+    for house, content in zip(houses, ordered_map(_content, jobs, workers=args.workers), strict=True):
         files[args.out / "content" / f"{house}.json.gz"] = habitat.zipped_json(content)
+        episodes += len(content["episodes"])
+        if args.format in CATEGORIES_OF:
+            points += sum(len(goal["view_points"]) for goals in content["goals_by_category"].values() for goal in goals)
     write_together(files)
     size = sum(file.stat().st_size for file in files) / 1e6
-    counts = f"{counted(len(houses), 'house')}, {counted(count, 'episode')}, {counted(points, 'view point')}"
-    print(f"{args.out}: {counts}, {size:.1f} MB.")
+    counts = [counted(len(houses), "house"), counted(episodes, "episode")]
+    counts += [counted(points, "view point")] if args.format in CATEGORIES_OF else []
+    print(f"{args.out}: {', '.join(counts)}, {size:.1f} MB.")
     return 0
 
 
@@ -100,35 +82,49 @@ def require_format(name: str, split: Split) -> None:
     chains_or_pictures = bool(kinds & {"picture", "instance"}) or len(specs) > len(split.episodes)
     if chains_or_pictures and name != "goat":
         raise ConfigError(f"'{split.name}' has chains or pictures, which {name} cannot hold: give --format goat.")
-    if kinds - {"category"} and name in ("v1", "v2"):
+    if kinds - {"category"} and name in CATEGORIES_OF:
         raise ConfigError(f"'{split.name}' has goals in words, which {name} cannot hold: give --format ovon or goat.")
 
 
-def _write_words(args: Args, split: Split) -> int:
-    """Writes files of HM3D-OVON or GOAT-Bench; returns the exit status."""
-    houses = [house for house in split.houses if any(episode.house == house for episode in split.episodes)]
-    jobs = [(args.split, house, args.format) for house in houses]
-    index = {"goals": {}} if args.format == "goat" else {}
-    files: dict[Path, bytes | str] = {
-        args.out / f"{args.out.name}.json.gz": habitat.zipped_json(index | {"episodes": []})
+def _tables(format_name: str) -> dict[str, Any]:
+    """Returns the numbers of the goal categories of a format of ObjectNav."""
+    goals = CATEGORIES_OF[format_name]
+    return {
+        "category_to_task_category_id": {goal: number for number, goal in enumerate(goals)},
+        "category_to_mp3d_category_id": {goal: MPCAT40_ID[goal] for goal in goals},
     }
-    for house, content in zip(houses, ordered_map(_of_words, jobs, workers=args.workers), strict=True):
-        files[args.out / "content" / f"{house}.json.gz"] = habitat.zipped_json(content)
-    write_together(files)
-    size = sum(file.stat().st_size for file in files) / 1e6
-    print(f"{args.out}: {counted(len(houses), 'house')}, {counted(len(split.episodes), 'episode')}, {size:.1f} MB.")
-    return 0
 
 
-def _of_words(job: tuple[str, str, str]) -> dict[str, Any]:
-    """Returns the content of the file of a house."""
-    name, house, kind = job
+def _content(job: tuple[str, str, str]) -> dict[str, Any]:
+    """Returns the content of the file of a house: its episodes and goals in a format."""
+    name, house, format_name = job
     split = load_split(name)
     task = Task(World(split.load_house(house)))
-    episodes = [episode for episode in split.episodes if episode.house == house]
-    write = goat_house if kind == "goat" else ovon_house
     scene = _scene_of(name, split, house)
-    return write(task, episodes, scene, step_cells=STEP_CELLS, most=MAX_VIEW_POINTS)
+    if format_name not in CATEGORIES_OF:
+        episodes = [episode for episode in split.episodes if episode.house == house]
+        write = goat_house if format_name == "goat" else ovon_house
+        return write(task, episodes, scene, step_cells=STEP_CELLS, most=MAX_VIEW_POINTS)
+    goals = CATEGORIES_OF[format_name]
+    numbered = [(number, episode) for number, episode in enumerate(split.episodes) if episode.house == house]
+    listed = _goals(task, sorted({episode.start.floor_z_m for _, episode in numbered}))
+    return {
+        **_tables(format_name),
+        "goals_by_category": {habitat.goals_key(house, goal): listed[goal] for goal in listed if goal in goals},
+        "episodes": [
+            {
+                "episode_id": str(number),
+                "scene_id": scene,
+                "scene_dataset_config": "default",
+                **_start(episode.start),
+                "object_category": episode.goal,
+                "info": {"geodesic_distance": episode.shortest_path_m, "stubborn_id": episode.episode_id},
+                "goals": [],
+            }
+            for number, episode in numbered
+            if episode.goal in goals
+        ],
+    }
 
 
 def _scene_of(name: str, split: Split, house: str) -> str:
@@ -137,17 +133,13 @@ def _scene_of(name: str, split: Split, house: str) -> str:
     return f"stubborn/{file.parent.name}/{house}.xml" if name in shipped_splits() else str(file)
 
 
-def _start(start: Any) -> dict[str, list[float]]:
+def _start(start: Pose) -> dict[str, list[float]]:
     state = habitat.to_agent_state(start)
     return {"start_position": state["position"], "start_rotation": state["rotation"]}
 
 
-def _goals(job: tuple[str, str]) -> dict[str, list[habitat.Goal]]:
-    """Returns the goals of a house with all their view points."""
-    name, house = job
-    split = load_split(name)
-    task = Task(World(split.load_house(house)))
-    floors_m = sorted({episode.start.floor_z_m for episode in split.episodes if episode.house == house})
+def _goals(task: Task, floors_m: Sequence[float]) -> dict[str, list[habitat.Goal]]:
+    """Returns the goals on some storeys of a house with all their view points."""
     listed: dict[str, list[habitat.Goal]] = {}
     for floor_z_m in floors_m:
         found = find_reachable_goals(

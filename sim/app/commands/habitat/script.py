@@ -21,7 +21,7 @@ from typing import Annotated, Literal
 import tyro
 
 from sim.app import cli
-from sim.app.evaluation.own_code import place_of, text_of
+from sim.app.evaluation.own_code import described
 from sim.core.errors import ConfigError, ObjectNavError, debug
 from sim.core.invocation import command
 from sim.robot.config import MotionKind
@@ -118,8 +118,6 @@ def _run(words: list[str]) -> int:
     except (ObjectNavError, KeyboardInterrupt):
         raise
     except BaseException as error:
-        raise ConfigError(
-            f"'{words[0]}': {type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
-        ) from error
+        raise ConfigError(f"'{words[0]}': {described(error, below=__file__)}") from error
     finally:
         sys.argv, sys.path[:] = before, path

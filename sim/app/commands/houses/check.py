@@ -26,7 +26,6 @@ from pathlib import Path
 import numpy as np
 
 from sim.app import cli
-from sim.app.analysis import display
 from sim.app.commands.house_file import HouseFile
 from sim.app.commands.houses.area import Area
 from sim.app.evaluation.parallel import ordered_map
@@ -34,6 +33,7 @@ from sim.core.errors import ConfigError, HouseError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
 from sim.core.paths import assets_dir
+from sim.core.vocabulary import counted
 from sim.env.scene import Scene
 from sim.episodes.splits import Split, has_episodes, house_files, labels_of, load_split, split_of_files
 from sim.gl import mujoco
@@ -106,8 +106,8 @@ def main(args: Args) -> int:
         cli.require_unset(args, of_new, "is for new houses: leave out --split and --house.")
     for checked in _checked(args):
         results.append(checked)
-        tries = f", {checked.tries} {'try' if checked.tries == 1 else 'tries'}" if fresh else ""
-        faults = display.counted(len(checked.faults), "fault")
+        tries = f", {counted(checked.tries, 'try', 'tries')}" if fresh else ""
+        faults = counted(len(checked.faults), "fault")
         print(f"{checked.name}: {faults}{tries}, {checked.seconds:.2f} s", flush=True)
         for kind, sentences in (("note", checked.notes), ("rejected", checked.rejects), ("fault", checked.faults)):
             for sentence in sentences:
@@ -116,7 +116,7 @@ def main(args: Args) -> int:
     all_tries = [checked.tries for checked in results]
     tries = f"tries: mean {statistics.mean(all_tries):.2f}, most {max(all_tries)}; " if fresh else ""
     print(
-        f"{display.counted(len(results), 'house')}, {faulty} with faults; {tries}"
+        f"{counted(len(results), 'house')}, {faulty} with faults; {tries}"
         f"median {statistics.median(checked.seconds for checked in results):.2f} s each"
     )
     return int(faulty > 0)

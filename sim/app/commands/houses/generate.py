@@ -30,7 +30,6 @@ from pathlib import Path
 from typing import Literal
 
 from sim.app import cli
-from sim.app.analysis import display
 from sim.app.commands.houses.area import Area
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import HouseError
@@ -38,6 +37,7 @@ from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
 from sim.core.invocation import command
 from sim.core.paths import cache_dir
+from sim.core.vocabulary import counted
 from sim.episodes.house_list import copy_textures, write_house_list
 from sim.homes.housegen.floor_plan.rooms import PlanKind
 from sim.homes.housegen.furniture import CATALOGUE
@@ -250,7 +250,7 @@ def _generate(
     seconds = time.process_time() - began_s
     plan = house.plan
     below = " below" if config.storeys == 2 else ""
-    size = f"{plan.area_m2:.0f} m2{below}, {display.counted(len(plan.rooms), 'room')}{below}"
+    size = f"{plan.area_m2:.0f} m2{below}, {counted(len(plan.rooms), 'room')}{below}"
     summary = f"{plan.kind}, {size}, {len(house.spec.geoms)} geoms" + f", {house.tries} tries" * (house.tries > 1)
     return Made(name, house_text(house.spec, textures), "", summary, house.rejects, seconds)
 
@@ -272,8 +272,8 @@ def _print_summary(made: list[Made], took_s: float) -> None:
         seconds = [house.seconds for house in good]
         rejected = sum(len(house.rejects) for house in good)
         print(
-            f"{display.counted(len(good), 'house')}, median {statistics.median(seconds):.2f} s each on one core, "
+            f"{counted(len(good), 'house')}, median {statistics.median(seconds):.2f} s each on one core, "
             f"{len(good) / sum(seconds):.2f} houses/s of one core, {len(good) / took_s:.2f} houses/s in total; "
-            f"{rejected} {'try' if rejected == 1 else 'tries'} rejected, "
-            f"{display.counted(len(made) - len(good), 'seed')} without a house"
+            f"{counted(rejected, 'try', 'tries')} rejected, "
+            f"{counted(len(made) - len(good), 'seed')} without a house"
         )

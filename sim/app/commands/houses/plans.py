@@ -19,12 +19,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.commands.houses.area import Area
 from sim.app.evaluation.parallel import Shard, ordered_map
 from sim.core.errors import ConfigError, HouseError
 from sim.core.paths import assets_dir
 from sim.core.reading import Json
+from sim.core.vocabulary import counted
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
 from sim.homes.housegen.config import shown_area

@@ -18,7 +18,7 @@ import numpy as np
 from msgspec import Meta
 
 from sim.app import cli
-from sim.app.analysis.display import counted, make_console
+from sim.app.analysis.display import make_console
 from sim.app.evaluation.own_code import one_line
 from sim.app.evaluation.parallel import ordered_map
 from sim.app.viewers.house_pictures import draw_top, draw_views, titled
@@ -27,6 +27,7 @@ from sim.core.files import inside, write_atomically, write_picture
 from sim.core.interface import GOAL_CATEGORIES
 from sim.core.invocation import command
 from sim.core.reading import convert, printable, read_json, sha256_of
+from sim.core.vocabulary import counted
 from sim.episodes.splits import LABELS_FILE, labels_of
 from sim.homes.importers.losses import added
 from sim.homes.importers.mesh_house import Collision, MeshConfig

@@ -19,7 +19,6 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 import tyro
 
@@ -44,7 +43,7 @@ VERSION = "habitat"
 class Args(MeshArgs):
     """Import houses of Habitat's data sets."""
 
-    path: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="PATH")]
+    path: tyro.conf.Positional[Path]
     """A data set or its folder, a scene, a scan (X.semantic.txt, X.house), or a folder of scans."""
     episodes: Path | None = None
     """Habitat's ObjectNav episodes of these houses: a .json.gz file, or a folder with content/*.json.gz."""

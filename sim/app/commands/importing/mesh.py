@@ -15,7 +15,6 @@ import functools
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 import tyro
 
@@ -35,7 +34,7 @@ TABLES = "categories"
 class Args(MeshArgs):
     """Import homes that are one mesh each."""
 
-    path: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="PATH")]
+    path: tyro.conf.Positional[Path]
     """A .glb, .gltf, .obj or .ply file, or a folder of them; lengths are metres."""
     categories: Path | None = None
     """A JSON file {"regex over node names": "category"}; nodes of the category "void" are left out."""

@@ -13,7 +13,6 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated
 
 import tyro
 
@@ -28,7 +27,7 @@ from sim.houses.references import files_of, require_root
 class Args(SceneArgs):
     """Import houses of MolmoSpaces."""
 
-    path: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="PATH")]
+    path: tyro.conf.Positional[Path]
     """A house file, or a folder of them with their metadata."""
     doors: Doors = "open"
     """Hinged doors are opened, at most to a right angle, or stay as they are."""

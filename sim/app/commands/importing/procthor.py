@@ -18,7 +18,6 @@ import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 import tyro
 
@@ -36,7 +35,7 @@ from sim.houses.writing import write_house
 class Args(ImportArgs):
     """Import houses of ProcTHOR."""
 
-    path: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="PATH")]
+    path: tyro.conf.Positional[Path]
     """A .json file of one house, or a .jsonl file of one house a line; both may be gzipped."""
     assets: Path | None = None
     """The asset database; by default asset-database.json or asset-database.json.gz next to PATH."""

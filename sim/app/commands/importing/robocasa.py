@@ -13,7 +13,6 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 import tyro
 
@@ -27,7 +26,7 @@ from sim.houses.references import files_of, require_root
 class Args(SceneArgs):
     """Import kitchens of RoboCasa, and other kitchens in MJCF."""
 
-    path: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="PATH")]
+    path: tyro.conf.Positional[Path]
     """An MJCF file, or a folder of them."""
 
 

@@ -39,7 +39,7 @@ from sim.app.analysis.comparison import Run, code_of, read_run
 from sim.app.analysis.tables import SIGNIFICANCE, ResultTable, to_csv, to_markdown, to_rich, with_corrections
 from sim.app.commands.reproduce.paper_claims import judged
 from sim.app.commands.reproduce.paper_figures import beside_paper
-from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
+from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
 from sim.app.commands.reproduce.runs import MAX_NAME, AgentSetup, RunKey, TableRun, folder_name, key_of, run_in_turns
 from sim.app.composition.setup import RunConfig, resolve
 from sim.app.evaluation.config_fields import differing_fields, field_text
@@ -49,6 +49,7 @@ from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.files import file_name, write_atomically, write_together
 from sim.core.option_types import meanings
+from sim.core.vocabulary import counted
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
 from sim.task.failures import cause_of_failure
@@ -144,7 +145,7 @@ def make_table(part: SplitEpisodes, name: str, setups: Sequence[AgentSetup], con
         console.print(f"{name}: no episode that {', '.join(setup.label for setup in setups)} have all run.")
         return None
     require_same_conditions(list(runs.values()))
-    return write_table(part.args, name, table_named(name), runs, common, console)
+    return write_table(part.args, name, runs, common, console)
 
 
 def shared_runs(part: SplitEpisodes, setups: Sequence[AgentSetup]) -> tuple[dict[AgentSetup, Run], list[str]]:
@@ -195,17 +196,10 @@ def _conditions(of: Run, other: Run) -> Mapping[str, object]:
     return flat | {"config": world}
 
 
-def write_table(
-    args: Args,
-    name: str,
-    table: PaperTable,
-    runs: Mapping[AgentSetup, Run],
-    common: Sequence[str],
-    console: Console,
-) -> str:
+def write_table(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequence[str], console: Console) -> str:
     """Builds one table, prints it, and writes it as Markdown and CSV; returns the Markdown."""
     lines = lines_of(runs, common)
-    parts = [with_corrections(part) for part in table.build(lines, list(runs))]
+    parts = [with_corrections(part) for part in table_named(name).build(lines, list(runs))]
     if not args.agents:
         parts[0] = beside_paper(name, parts[0])
         claims = judged(name, lines)
@@ -224,7 +218,7 @@ def _write_all(args: Args, pages: Sequence[str], console: Console) -> None:
     if pages:
         file = args.out / "tables" / f"{stem_of(args, args.table)}.md"
         write_atomically(file, "\n".join(pages))
-        console.print(f"{display.counted(len(pages), 'table')} on {file}")
+        console.print(f"{counted(len(pages), 'table')} on {file}")
 
 
 def _write_pages(args: Args, of_splits: Sequence[Args], pages: Mapping[str, Sequence[str]], console: Console) -> None:
@@ -243,7 +237,8 @@ def stem_of(args: Args, name: str) -> str:
         agents = f"{len(args.agents)}-agents-{zlib.crc32(agents.encode()):08x}"
     noise = "" if args.noise == Args.noise else args.noise
     split = "" if args.split == Args.split else _split_name(args)
-    return "_".join(filter(None, (name, file_name(args.semantics or ""), agents, noise, split, _seed_name(args))))
+    seed = f"seed{args.seed}" if args.seed else ""
+    return "_".join(filter(None, (name, file_name(args.semantics or ""), agents, noise, split, seed)))
 
 
 def with_cause(of: Run, result: EpisodeResult) -> EpisodeResult:
@@ -260,7 +255,7 @@ def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequ
     errors = sum(of.results[i].is_error for of in runs.values() for i in common)
     codes = Counter(code_of(of, i) for of in runs.values() for i in common)
     notes = [
-        f"{display.counted(len(common), 'episode')} in {display.counted(houses, 'house')} of "
+        f"{counted(len(common), 'episode')} in {counted(houses, 'house')} of "
         f"{split['name']} {split['version']} ({split['sha256'][:8]}), "
         f"sensor noise {config.get('noise', RunOptions.noise)}, seed {config.get('seed', RunOptions.seed)}, "
         f"mujoco {versions.get('mujoco', 'unknown')}.",
@@ -311,10 +306,6 @@ def _folder(args: Args, setup: AgentSetup) -> Path:
 
 def _split_name(args: Args) -> str:
     return Path(args.split).resolve().name if Path(args.split).is_dir() else args.split
-
-
-def _seed_name(args: Args) -> str:
-    return f"seed{args.seed}" if args.seed else ""
 
 
 def _read(args: Args, setup: AgentSetup, split: Split) -> Run:

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.commands import episodes
 from sim.app.evaluation.parallel import ordered_map
 from sim.app.submissions.announcement import Commit, Episodes, Houses, read_announcement, secret_of, write_published
@@ -24,6 +23,7 @@ from sim.app.submissions.sealing import LIKE, VERSION, new_secret, number_of, re
 from sim.core.errors import ConfigError, HouseError
 from sim.core.files import write_atomically
 from sim.core.reading import convert, sha256_of
+from sim.core.vocabulary import counted
 from sim.episodes.house_list import copy_textures
 from sim.episodes.splits import Split, load_split
 from sim.houses.references import SHARED_TEXTURES

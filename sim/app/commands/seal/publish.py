@@ -14,9 +14,9 @@ from typing import Annotated
 import tyro
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.submissions.announcement import write_published
 from sim.app.submissions.sealing import seal_file, seal_of
+from sim.core.vocabulary import counted
 from sim.episodes.splits import load_split
 
 

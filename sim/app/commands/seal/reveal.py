@@ -19,12 +19,12 @@ from typing import Annotated
 import tyro
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.commands.seal.make import make_split, require_empty
 from sim.app.submissions.announcement import faults_of_order, secret_of
 from sim.app.submissions.sealing import Seal, digest_of, other_versions, read_seal, read_secret, require_sealed
 from sim.core.errors import ConfigError
 from sim.core.reading import sha256_of
+from sim.core.vocabulary import counted
 from sim.episodes.splits import Split, load_split
 
 

@@ -8,16 +8,13 @@ forms. A simulator registers its frames there (docs/habitat.md).
 
 from __future__ import annotations
 
-import contextlib
-import sys
 from dataclasses import dataclass
 from typing import Annotated
 
 from msgspec import Meta
 
-from sim.app.analysis import display
 from sim.app.services.detectors import Source, make_detector
-from sim.app.services.hosting import in_address, listen, require_web, show_errors_in_one_line
+from sim.app.services.hosting import in_address, listen, require_web, serve
 
 PORTS = 4
 
@@ -38,18 +35,9 @@ def main(args: Args) -> int:
     """Serves until it is interrupted; returns the exit status."""
     require_web()
     sockets = [listen(args.host, args.port + number) for number in range(PORTS)]
-    import uvicorn
-
     from sim.app.services.server import make_app
 
-    config = uvicorn.Config(make_app(make_detector(args.source)), log_level="warning", access_log=False)
-    show_errors_in_one_line()
-    display.make_console().print(
-        f"Detectors ({args.source}) on http://{in_address(args.host)}, ports {args.port} to {args.port + PORTS - 1}. "
-        "Ctrl-C ends the server.",
-        soft_wrap=True,
-    )
-    sys.stdout.flush()
-    with contextlib.suppress(KeyboardInterrupt):
-        uvicorn.Server(config).run(sockets=sockets)
+    ports = f"ports {args.port} to {args.port + PORTS - 1}"
+    where = f"Detectors ({args.source}) on http://{in_address(args.host)}, {ports}."
+    serve(make_app(make_detector(args.source)), sockets, where)
     return 0

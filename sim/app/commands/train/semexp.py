@@ -13,11 +13,10 @@ from __future__ import annotations
 import torch
 
 from sim.core.interface import ConfigError
-from sim.core.invocation import command
 from sim.training.figures import require_packages
 from sim.training.plan_split import HELD_BACK, split_plans
 from sim.training.semexp.options import Args as Args
-from sim.training.training_files import print_next_commands
+from sim.training.training_files import print_next_runs
 
 
 def main(args: Args) -> int:
@@ -37,7 +36,5 @@ def main(args: Args) -> int:
     torch.set_num_threads(1)  # the network is small
     run = Run(args, plans)
     run.train()
-    weights = args.out / "semexp.safetensors"
-    chosen = ("--agent", "semexp", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
-    print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
+    print_next_runs(args.out / "semexp.safetensors", "semexp", "agent.explorer.weights")
     return 0

@@ -43,11 +43,6 @@ def facts_of(split: Split) -> dict[str, TrapFacts]:
     return {house: facts for house, facts in traps.items() if facts is not None}
 
 
-def require_matplotlib() -> None:
-    """Raises ConfigError if matplotlib, which draws the curves, is not installed."""
-    empty_figure(1.0, 1.0, what="The curves of traps")
-
-
 def write_family_report(
     folder: Path, rows: Rows, split: str, facts: Mapping[str, TrapFacts], *, pictures: bool
 ) -> None:
@@ -96,7 +91,7 @@ def as_csv(points: Sequence[Point]) -> str:
 
 def draw_curves(points: Sequence[Point]) -> Figure:
     """Returns a figure: success above, collisions below, a column for each quantity, a line for each agent."""
-    figure = empty_figure(4.4 * len(QUANTITIES), 6.6, what="The curves of traps")
+    figure = empty_figure(4.4 * len(QUANTITIES), 6.6)
     axes = figure.subplots(2, len(QUANTITIES), squeeze=False)
     agents = sorted({point.agent for point in points})
     for column, quantity in enumerate(QUANTITIES):
@@ -121,7 +116,7 @@ def draw_families(rows: Rows, facts: Mapping[str, TrapFacts]) -> Figure:
     """Returns a figure: success above, collisions below, a place for each family, a marker for each agent."""
     families = _families_of(rows, facts)
     agents = sorted({row.agent for row in rows})
-    figure = empty_figure(max(6.0, 1.1 * len(families) + 1.5), 6.6, what="The curves of traps")
+    figure = empty_figure(max(6.0, 1.1 * len(families) + 1.5), 6.6)
     axes = figure.subplots(2, 1, sharex=True)
     for number, agent in enumerate(agents):
         of = [_of(rows, facts, agent, family=name) for name in families]

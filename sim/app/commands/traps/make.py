@@ -17,11 +17,11 @@ from pathlib import Path
 from typing import Literal
 
 from sim.app import cli
-from sim.app.analysis import display
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError, HouseError
 from sim.core.files import write_atomically
 from sim.core.paths import assets_dir
+from sim.core.vocabulary import counted
 from sim.episodes import habitat
 from sim.episodes.episode import Episode
 from sim.episodes.reachable_goals import find_reachable_goals
@@ -110,7 +110,7 @@ def write_family_trap(folder: Path, key: TrapKey) -> tuple[Episode, dict[str, li
         raise HouseError(f"Trap '{name}': the path is {distance_m} m long in its file, not {facts.shortest_path_m} m.")
     line = (
         f"{name}: {facts.shortest_path_m:.1f} m instead of {facts.open_path_m:.1f} m, {facts.fewest_actions} actions, "
-        f"gap {facts.gap_m:.2f} m, {display.counted(facts.hidden_objects, 'hidden object')}"
+        f"gap {facts.gap_m:.2f} m, {counted(facts.hidden_objects, 'hidden object')}"
     )
     episode = Episode(f"{name}_0", name, trap.goal, trap.start, distance_m)
     return episode, {goal: places for goal, places in listed.items() if goal == trap.goal}, line

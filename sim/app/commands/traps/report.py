@@ -24,7 +24,7 @@ from msgspec.structs import asdict
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.tables import Cell, ResultTable, to_markdown, to_rich
-from sim.app.commands.traps.family_report import facts_of, family_table, require_matplotlib, write_family_report
+from sim.app.commands.traps.family_report import facts_of, family_table, write_family_report
 from sim.app.commands.traps.picture import draw_trial
 from sim.app.commands.traps.trial import TrapResult, Trial, run_trial
 from sim.app.composition.agents import build_agent, find_agent, free_agent
@@ -35,10 +35,12 @@ from sim.core.files import csv_text, file_name, open_to_grow, write_atomically, 
 from sim.core.files import write_picture as save_picture
 from sim.core.interface import Agent, ConfigError
 from sim.core.reading import convert, read_json, read_lines
+from sim.core.vocabulary import counted
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
 from sim.robot.config import PHYSICS_VERSION
+from sim.training.figures import require_packages
 from stubborn.agent import StubbornAgent
 from stubborn.detection.verification import AcceptAll
 from stubborn.drawing import map_painter
@@ -75,7 +77,7 @@ def main(args: Args) -> int:
     split = load_split(args.split)
     episodes, facts = selected_episodes(split, args), facts_of(split)
     if facts:
-        require_matplotlib()
+        require_packages("matplotlib")
     for name in args.agents:
         find_agent(name)  # a wrong name is refused before anything is written
     write_or_compare_config(args, split)
@@ -93,7 +95,7 @@ def main(args: Args) -> int:
             with open_to_grow(results, "a") as file:
                 file.write(json.dumps(asdict(rows[-1])) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
-            console.print(f"{name} {trial.episode_id}: {outcome} after {display.counted(len(trial.motions), 'step')}")
+            console.print(f"{name} {trial.episode_id}: {outcome} after {counted(len(trial.motions), 'step')}")
     table = table_of(rows)
     write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": to_markdown([table])})
     write_family_report(args.out, rows, args.split, facts, pictures=args.pictures)

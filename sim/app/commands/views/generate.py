@@ -26,7 +26,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import cast, get_args
+from typing import Literal
 
 import numpy as np
 
@@ -37,6 +37,7 @@ from sim.app.evaluation.executors import make_executor
 from sim.app.evaluation.parallel import Shard, ordered_map
 from sim.core.errors import HouseError
 from sim.core.interface import CameraModel, ConfigError
+from sim.core.vocabulary import counted
 from sim.env.scene import Scene
 from sim.episodes.splits import Split, load_split, one_house
 from sim.homes.housegen.furniture import CATALOGUE
@@ -49,10 +50,10 @@ from sim.houses.house import House
 from sim.renderer.opengl import describe_gl
 from sim.renderer.profiles import get_profile
 from sim.robot.config import RobotConfig
-from sim.training.views.aimed import AIMS
+from sim.training.views.aimed import Aim
 from sim.training.views.shards import ShardNote, read_note, shard_name, write_index, write_shard
 from sim.training.views.variation import with_other_light
-from sim.training.views.views import EXTRAS, sample_views
+from sim.training.views.views import Extra, sample_views
 
 FRESH_SEEDS_FROM = 1_000_000
 """Smallest seed of new houses; the seeds of the shipped splits are lower."""
@@ -60,9 +61,6 @@ FRESH_SEEDS_FROM = 1_000_000
 MAX_PER_SHARD = 250
 """Views in a shard, if there are enough of them for `MIN_HOUSES` shards."""
 MIN_HOUSES = 20
-
-POOLS = ("train",)
-"""Furniture of new houses: the styles of the split train."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,15 +70,15 @@ class Args(HouseFile):
     split: str = "train"
     """Houses of a shipped split, or of a folder with the same layout."""
 
-    pool: str | None = None
-    """New houses only, with the styles of this pool: train."""
+    pool: Literal["train"] | None = None
+    """New houses only, with the styles of this pool."""
     reshape: bool = False
     """With --pool or --furniture: about half of the items get other proportions than those of their styles."""
     furniture: Path | None = None
     """Folder of imported models (`stubborn import furniture`): new houses only, with models of the split train."""
     vary: bool = False
     """Other light in each house (lamps off, dimmed or warmer, another sun), and a body that leans in some views."""
-    withheld: str | None = None
+    withheld: Withheld | None = None
     """With --pool or --furniture, for selecting a network: without leaves a fifth of the styles and models out of the
     houses; only prefers these."""
     views: cli.Count = 1000
@@ -101,16 +99,16 @@ class Args(HouseFile):
     """Seed of houses and poses."""
     views_per_shard: cli.Count | None = None
     """Number of views in a shard, all of one house; None: 250, or fewer, so that few views still show 20 houses."""
-    extras: tuple[str, ...] = ()
+    extras: tuple[Extra, ...] = ()
     """Additional data of each view: instances (ids, COCO boxes and masks), normals, poses (camera to world)."""
     sequence: cli.Count | None = None
     """Views come as sequences of this many along paths of a robot; None: half along paths, half anywhere."""
-    aim: str | None = None
+    aim: Aim | None = None
     """rare: cameras look at stools, cushions, showers and other rare goals from 1 to 3.5 m, partly hidden ones too."""
     shrink: cli.Count = 1
     """Factor by which the views are reduced: 2 gives 320 x 240."""
-    rgb: str = "jpg"
-    """Format of the colour images: jpg or png."""
+    rgb: Literal["jpg", "png"] = "jpg"
+    """Format of the colour images."""
     check: bool = False
     """Compare the checksums of existing shards, in addition to their sizes."""
 
@@ -140,12 +138,12 @@ def main(args: Args) -> int:
     if "instances" not in args.extras:
         print("Without --extras instances, the views have no ids of objects, which `train segmentation` needs.")
     complete = f"{len(tasks) - len(missing)} complete, {len(todo)} to generate here."
-    print(f"{display.counted(len(tasks), 'shard')}, {complete}", flush=True)
+    print(f"{counted(len(tasks), 'shard')}, {complete}", flush=True)
     began, made = time.perf_counter(), 0
     for note in ordered_map(functools.partial(make_shard, args, config), todo, executor=executor):
         made += note.views
         rate = made / (time.perf_counter() - began)
-        views = display.counted(note.views, "view")
+        views = counted(note.views, "view")
         print(f"{note.shard}: {views} of {note.house}, {note.size_bytes / 1e6:.1f} MB, {rate:.1f} views/s")
         sys.stdout.flush()
         notes[int(note.shard.rsplit("-", 1)[1])] = note
@@ -240,10 +238,9 @@ def _house(args: Args, task: ShardTask, fresh_seed: int | None) -> tuple[House, 
 
 def _made(args: Args, seed: int) -> GeneratedHouse:
     config = replace(_recipe(args, seed).config(), reshape=args.reshape)
-    withheld = cast("Withheld | None", args.withheld)
     if args.furniture is None:
-        return generate_house(seed, config, restricted(CATALOGUE, withheld))
-    return ImportedFurniture(args.furniture).make_house(seed, config, withheld=withheld)
+        return generate_house(seed, config, restricted(CATALOGUE, args.withheld))
+    return ImportedFurniture(args.furniture).make_house(seed, config, withheld=args.withheld)
 
 
 def _recipe(args: Args, seed: int) -> Recipe:
@@ -300,27 +297,19 @@ def _check_options(args: Args) -> None:
     camera = CameraModel()
     if camera.width_px % args.shrink or camera.height_px % args.shrink:
         raise ConfigError(f"--shrink must divide {camera.width_px} and {camera.height_px}, got {args.shrink}.")
-    unknown = [name for name in args.extras if name not in EXTRAS]
-    if unknown or len(set(args.extras)) < len(args.extras):
-        raise ConfigError(f"--extras must be some of {', '.join(EXTRAS)}, got '{' '.join(args.extras)}'.")
+    if len(set(args.extras)) < len(args.extras):
+        raise ConfigError(f"--extras must be different, got '{' '.join(args.extras)}'.")
     if args.sequence is not None and (args.views % args.sequence or views_per_shard(args) % args.sequence):
         raise ConfigError(f"--sequence must divide --views and --views-per-shard, got {args.sequence}.")
-    if args.aim is not None and (args.aim not in AIMS or args.sequence is not None):
-        raise ConfigError(f"--aim must be {' or '.join(AIMS)}, without --sequence, got '{args.aim}'.")
-    if args.rgb not in ("jpg", "png"):
-        raise ConfigError(f"--rgb must be jpg or png, got '{args.rgb}'.")
-    if args.pool not in (None, *POOLS) or (args.pool and args.split != "train"):
-        known = " or ".join(POOLS)
-        raise ConfigError(f"--pool must be {known}, and needs --split train, got '{args.pool}' with '{args.split}'.")
-    if args.furniture is not None and args.split != "train":
-        raise ConfigError(f"--furniture needs --split train, got '{args.split}': other houses are files.")
-    if args.withheld not in (None, *get_args(Withheld)) or (args.withheld and not (args.pool or args.furniture)):
-        known = " or ".join(get_args(Withheld))
-        raise ConfigError(f"--withheld must be {known}, and needs --pool or --furniture, got '{args.withheld}'.")
-    if args.reshape and not (args.pool or args.furniture):
-        raise ConfigError("--reshape needs --pool or --furniture: other houses are files.")
+    if args.aim is not None and args.sequence is not None:
+        raise ConfigError("--aim and --sequence exclude each other.")
+    is_new = args.pool is not None or args.furniture is not None
+    if is_new and args.split != "train":
+        raise ConfigError(f"--pool and --furniture need --split train, got '{args.split}': other houses are files.")
+    if not is_new:
+        cli.require_unset(args, ("withheld", "reshape"), "needs --pool or --furniture: other houses are files.")
     args.check_house()
-    if args.house is not None and (args.pool is not None or args.furniture is not None or args.split != "train"):
+    if args.house is not None and (is_new or args.split != "train"):
         raise ConfigError("--house excludes --split, --pool and --furniture.")
 
 
@@ -347,6 +336,6 @@ def _summary(notes: Sequence[ShardNote]) -> str:
     views, size_bytes = sum(note.views for note in notes), sum(note.size_bytes for note in notes)
     houses = len({note.house for note in notes})
     return (
-        f"{display.counted(views, 'view')} of {display.counted(houses, 'house')} in "
-        f"{display.counted(len(notes), 'shard')}, {display.file_size(size_bytes)}; of the processes' time: {share}."
+        f"{counted(views, 'view')} of {counted(houses, 'house')} in "
+        f"{counted(len(notes), 'shard')}, {display.file_size(size_bytes)}; of the processes' time: {share}."
     )

@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.app.viewers.palette import with_legend
 from sim.app.viewers.text import write
 from sim.core.files import write_picture
 from sim.core.pictures import tiled
+from sim.core.vocabulary import counted
 from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard
 from sim.training.views.coco import decode_mask
 from sim.training.views.normals import encode_normals

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app import cli
-from sim.app.analysis.display import counted
 from sim.core.files import inside, write_atomically
+from sim.core.vocabulary import counted
 from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard
 from sim.training.views.coco import CATEGORIES
 from sim.training.views.normals import encode_normals

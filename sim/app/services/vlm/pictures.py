@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sim.core.files import write_atomically
 from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
+from sim.core.pictures import jpeg_of
 from stubborn.agent import StubbornAgent
 from stubborn.drawing.canvas import Canvas
 from stubborn.drawing.map_painter import paint_layers
@@ -162,7 +163,7 @@ def write_transcript(folder: Path, name: str, text: str, pictures: Sequence[NDAr
 
 def jpeg(picture: NDArray[np.uint8]) -> bytes:
     """Returns an RGB picture (h, w, 3) as the JPEG that a model gets."""
-    return cv2.imencode(".jpg", picture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 90])[1].tobytes()
+    return jpeg_of(picture, 90)
 
 
 def _draw_number(image: NDArray[np.uint8], pixel: tuple[int, int], number: int) -> None:

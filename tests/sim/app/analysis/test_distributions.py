@@ -31,7 +31,7 @@ def line(**changed: Any) -> EpisodeResult:
     return a_result(**{"episode_id": "e0", "first_seen_step": 7, "steps_to_first_sight": 7, "collisions": 2} | changed)
 
 
-@pytest.mark.parametrize("bins", [DISTANCES, HOUSE_SIZES, FIRST_SIGHTS])
+@pytest.mark.parametrize("bins", [DISTANCES, HOUSE_SIZES])
 def test_a_number_is_in_the_bin_that_begins_at_or_below_it_and_ends_above_it(bins: Bins) -> None:
     assert len(bins.names) == len(set(bins.names)) == len(bins.edges) + 1
     for i, edge in enumerate(bins.edges):
@@ -39,7 +39,7 @@ def test_a_number_is_in_the_bin_that_begins_at_or_below_it_and_ends_above_it(bin
         assert bins.name(edge - 1e-9) == bins.names[max(0, i - 1)]
     assert bins.name(1e9) == bins.names[-2]
     assert bins.name(None) == bins.unknown == bins.names[-1]
-    assert len(FIRST_SIGHT_LABELS) == len(FIRST_SIGHTS.names)
+    assert len(FIRST_SIGHT_LABELS) == len(FIRST_SIGHTS) + 1
 
 
 def test_groups_hold_each_episode_once_and_differences_are_from_the_first_run() -> None:

@@ -121,11 +121,6 @@ def test_episodes_of_removed_houses_are_removed(folder):
     assert [file.name for file in (folder / "content").iterdir()] == ["first.json.gz"]
 
 
-def test_a_folder_without_houses_is_refused(tmp_path):
-    with pytest.raises(ConfigError, match=wording.THERE_IS_NO_HOUSE):
-        main(Args(split=tmp_path))
-
-
 def test_the_success_rule_decides_the_recorded_distances(folder):
     rule = SuccessRule(distance_m=0.5)
     main(Args(split=folder, episodes=3, success=rule))

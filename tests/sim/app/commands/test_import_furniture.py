@@ -38,8 +38,6 @@ def test_a_source_without_a_usable_model_ends_with_status_1(tmp_path: Path) -> N
 
 
 def test_options_that_do_not_fit_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="needs --furniture"):
-        generate_houses.main(generate_houses.Args(out=tmp_path, transfer_test=True))
     with pytest.raises(ConfigError, match="shipped split"):
         generate_houses.main(generate_houses.Args(out=tmp_path, split="val", furniture=tmp_path))
     with pytest.raises(ConfigError, match="--split train"):

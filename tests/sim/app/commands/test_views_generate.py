@@ -157,14 +157,10 @@ def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(mon
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"shrink": 7}, r"--shrink.*640.*480.*7"),
-        ({"extras": ("boxes",)}, r"--extras.*'boxes'"),
+        ({"extras": ("poses", "poses")}, r"--extras.*'poses poses'"),
         ({"sequence": 2}, r"--sequence.*--views.*--views-per-shard.*2"),
-        ({"rgb": "bmp"}, r"--rgb.*'bmp'"),
-        ({"shard": "0/2"}, r'--shard.*"i/n".*1'),
         ({"reshape": True}, "--reshape needs --pool or --furniture"),
-        ({"pool": "heldout", "split": "train"}, r"--pool.*--split.*'heldout'"),
-        ({"profile": "best"}, "Unknown rendering profile 'best'"),
+        ({"pool": "train", "split": "val"}, r"--pool.*--split train.*'val'"),
     ],
 )
 def test_a_wrong_option_is_refused(split: Path, tmp_path: Path, changes: dict, sentence: str) -> None:

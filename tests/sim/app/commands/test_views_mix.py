@@ -10,7 +10,6 @@ import pytest
 from sim.app.commands.views import generate
 from sim.app.commands.views.generate import plan
 from sim.app.commands.views.mix import Args, folders, main, parts, selection
-from sim.core.interface import ConfigError
 from sim.episodes.splits import load_split
 
 
@@ -60,5 +59,3 @@ def test_the_selection_is_made_first_and_the_training_in_turns(tmp_path: Path, m
         ("selection", 40), ("reshaped", 640), ("train", 40), ("aimed", 120),
         ("reshaped", 1280), ("train", 80), ("aimed", 240),
     ]  # fmt: skip
-    with pytest.raises(ConfigError, match=r"--furniture.*'.*nothing'"):
-        main(Args(out=tmp_path, furniture=tmp_path / "nothing"))

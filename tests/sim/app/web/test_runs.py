@@ -19,9 +19,10 @@ from sim.core.errors import ConfigError, HouseError
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
 
 import anyio
+from starlette.requests import Request
 from starlette.responses import Response
 
-from sim.app.web.answers import as_ascii, or_404
+from sim.app.web.answers import as_ascii, in_thread
 from tests.helpers.results import ENTRIES
 
 LINE = ENTRIES | {"episode_id": "e/0"}
@@ -164,10 +165,10 @@ def test_a_chain_with_one_goal_of_two_is_not_found(tmp_path: Path) -> None:
 
 
 def test_an_error_of_this_project_is_a_response() -> None:
-    def draw() -> Response:
+    def draw(request: Request) -> Response:
         raise HouseError("House 'x.xml' is broken.")
 
-    answer = anyio.run(or_404, draw)
+    answer = anyio.run(in_thread(draw), Request({"type": "http"}))
     assert (answer.status_code, answer.body) == (404, b"House 'x.xml' is broken.")
 
 

@@ -10,7 +10,13 @@ import torch
 from torch.optim.swa_utils import AveragedModel
 
 from sim.training.segmentation.samples import IGNORED
-from sim.training.segmentation.steps import exponential_average, pyramid_loss, root_class_weights, set_normalisation
+from sim.training.segmentation.steps import (
+    MAX_RATIO,
+    exponential_average,
+    pyramid_loss,
+    root_class_weights,
+    set_normalisation,
+)
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
 from tests.helpers import wording
 
@@ -73,9 +79,9 @@ def test_pixel_weights_count_pixels_more_often() -> None:
 def test_root_weights_fall_with_the_square_root_of_the_share_up_to_a_ratio() -> None:
     pixels = np.zeros(41)
     pixels[:5] = (1e6, 4e4, 1e4, 1.0, 0.0)  # void has no weight
-    weights = root_class_weights(pixels, most=5.0)
+    weights = root_class_weights(pixels)
     assert float(weights[1] / weights[0]) == pytest.approx(2.0)
-    assert float(weights[2] / weights[0]) == pytest.approx(5.0)
+    assert float(weights[2] / weights[0]) == pytest.approx(MAX_RATIO)
     assert float(weights[3]) == 0.0
     assert float(weights[:3].mean()) == pytest.approx(1.0)
 
