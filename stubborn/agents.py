@@ -85,7 +85,7 @@ PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
             for name, row in ABLATION.items()
         },
         "stubborn-plus": (
-            "our agent, which tracks objects, verifies doubtful ones, tours unseen areas and feels along panes",
+            "our agent: tracks and verifies objects, tours unseen areas, feels its way along panes",
             PLUS,
         ),
         "single-frame": (
