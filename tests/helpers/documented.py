@@ -338,9 +338,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{_RUN} --root {_KITCHEN} --house {_KITCHEN}/kitchen_assets/kitchen_env_model.xml"
     " --labels examples/worlds/kitchen.json --goal counter --semantics gt --episodes 2": _PACKAGE,
-    "stubborn reproduce motions --semantics gt --split val --episodes 50 --workers 2": (
+    "stubborn reproduce motions --semantics gt --split val --episodes 100 --workers 2": (
         "stubborn reproduce motions --semantics gt --split val --agents oracle 'oracle --motion sliding' --episodes 1"
         " --workers 1 --out {tmp}/paper",
+    ),
+    "stubborn reproduce motions --semantics gt --split hazards --episodes 50 --workers 2": (
+        "stubborn reproduce motions --semantics gt --split hazards --agents oracle --episodes 1 --out {tmp}/paper",
     ),
     "stubborn reproduce splits --episodes 200 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",

@@ -107,7 +107,7 @@ CHUNK = 50
 """Episodes of a row before the next row's turn."""
 PAPER_EPISODES = 100
 """The first episodes of val, as far as all runs of a table of the paper have them."""
-MOTION_EPISODES = {"val": 50}
+MOTION_EPISODES = {"val": 100, "hazards": 50}
 """The first episodes of the splits that motions.md shows, as far as all agents have them with each motion."""
 ABOUT_PAPER = f"""\
 # The paper's tables
