@@ -74,7 +74,7 @@ EPISODES = {
     "further": {"large": 100, "hazards": 100, "transfer": 100, "contact-heldout": 60},
     "ablation": {"val": 100, "hazards": 50},
     "explorers": {"val": 100},
-    "explorers-large": {"large": 50},
+    "explorers-large": {"large": 100},
     "semexp": {"val": 100},
     "network": {"val": 100, "transfer": 100},
     "earlier": {"val": 200, "large": 100, "hazards": 100},
