@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.stats import kendalltau
 
-from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, difference_cell, houses_of, mean_cell
+from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, difference_cell, episodes_of, houses_of, mean_cell
 from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.commands.reproduce.runs import AgentSetup
-from sim.app.evaluation.intervals import Estimate
+from sim.app.evaluation.intervals import Estimate, paired_difference
 from sim.task.result import EpisodeResult, Metric
 
 MOTIONS = ("contacts", "no-sliding", "sliding")
@@ -38,12 +39,7 @@ def motions(lines: Mapping[AgentSetup, Sequence[EpisodeResult]], setups: Sequenc
         _orders(rows, shown),
     ]
     if {"stubborn", "stubborn-i"} <= set(rows):
-        cells = [
-            (motion, [difference_cell(m, rows["stubborn-i"][motion], rows["stubborn"][motion]) for m in (SUCCESS, SPL)])
-            for motion in shown
-        ]
-        title = "What the measures against collisions are worth: `stubborn` minus `stubborn-i`"
-        tables.append(ResultTable("motions_measures", title, ("motion", SUCCESS.title, SPL.title), cells))
+        tables += [_measures(rows, shown), _measures_by_motion(rows, shown)]
     return tables
 
 
@@ -79,14 +75,51 @@ def _changes(rows: Rows, shown: Sequence[str]) -> ResultTable:
     )
 
 
+def _measures(rows: Rows, shown: Sequence[str]) -> ResultTable:
+    return ResultTable(
+        "motions_measures",
+        "What the measures against collisions are worth: `stubborn` minus `stubborn-i`",
+        ("motion", SUCCESS.title, SPL.title),
+        [
+            (motion, [difference_cell(m, rows["stubborn-i"][motion], rows["stubborn"][motion]) for m in (SUCCESS, SPL)])
+            for motion in shown
+        ],
+    )
+
+
+def _measures_by_motion(rows: Rows, shown: Sequence[str]) -> ResultTable:
+    return ResultTable(
+        "motions_measures_by_motion",
+        "Whether the measures are worth more with one kind of motion than with another",
+        ("motions", SUCCESS.title, SPL.title),
+        [
+            (f"{b} - {a}", [_worth_difference(rows, metric, a, b) for metric in (SUCCESS, SPL)])
+            for a, b in itertools.combinations(shown, 2)
+        ],
+    )
+
+
+def _worth_difference(rows: Rows, metric: Metric, a: str, b: str) -> Cell:
+    """Returns what the measures are worth with motion b minus their worth with motion a, paired by episode."""
+    some = rows["stubborn"][a]
+    worths = [
+        [(metric.value(has) or 0.0) - (metric.value(lacks) or 0.0) for has, lacks in zip(*both, strict=True)]
+        for both in ((rows["stubborn"][motion], rows["stubborn-i"][motion]) for motion in (a, b))
+    ]
+    difference = paired_difference(*worths, houses_of(some), episodes=episodes_of(some))
+    return Cell(difference, metric.percent, metric.digits, difference=True)
+
+
 def _orders(rows: Rows, shown: Sequence[str]) -> ResultTable:
     """Returns Kendall's tau-b between the orders of the agents in two motions."""
-    pairs = [(a, b) for i, a in enumerate(shown) for b in shown[i + 1 :]]
     return ResultTable(
         "motions_orders",
         "Rank correlation of the agents between two kinds of motion (Kendall's tau-b)",
         ("motions", SUCCESS.title, SPL.title),
-        [(f"{a}, {b}", [_order(rows, metric, a, b) for metric in (SUCCESS, SPL)]) for a, b in pairs],
+        [
+            (f"{a}, {b}", [_order(rows, metric, a, b) for metric in (SUCCESS, SPL)])
+            for a, b in itertools.combinations(shown, 2)
+        ],
         (f"Intervals are of {_DRAWS} draws of the houses with replacement.",),
     )
 

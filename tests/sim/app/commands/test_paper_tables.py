@@ -121,12 +121,13 @@ def test_motions_have_a_column_each_and_the_orders_of_agents_are_compared() -> N
     agents = ("stubborn", "stubborn-i", "oracle")
     setups = TABLES["motions"].setups((*agents, *(f"{agent} --motion sliding" for agent in agents)))
     made = TABLES["motions"].build(lines_of(setups, failed=(10, 20, 0, 5, 2, 0)), setups)
-    success, spl, collisions, changes, orders, measures = made
+    success, spl, collisions, changes, orders, measures, by_motion = made
     for means in (success, spl, collisions):
         assert [row for row, _ in means.rows] == list(agents)
         assert means.header == ("agent", "contacts", "sliding")
     assert cell(changes, "stubborn-i", "success %: contacts - sliding").estimate.mean == pytest.approx(-18 / 40)
     assert cell(measures, "contacts", "success %").estimate.mean == pytest.approx(10 / 40)
+    assert cell(by_motion, "sliding - contacts", "success %").estimate.mean == pytest.approx(-3 / 40 - 10 / 40)
     order = cell(orders, "contacts, sliding", "success %").estimate
     assert order.mean == pytest.approx(1 / 3)  # two of the three pairs of agents have the same order
     assert order.ends[0] <= 1 / 3 <= order.ends[1]
