@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from tests.helpers import sampling, typechecking
 
@@ -14,6 +15,8 @@ os.environ.setdefault("STUBBORN_CACHE_DIR", str(Path(tempfile.gettempdir()) / "s
 os.environ.setdefault("STUBBORN_CACHE_MB", "0")  # tests see the code, not what it prepared before
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # PyTorch's threads and the workers of xdist would fight for the cores
 typechecking.install()
+settings.register_profile("untimed", settings.default, deadline=None)  # the first call of a kernel compiles it
+settings.load_profile("untimed")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -110,7 +110,7 @@ def _poses(model: mujoco.MjModel, names: list[str], base: str | None = None) -> 
 
 
 @pytest.mark.costly
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(house=houses(), robot=robots())
 def test_every_geom_stands_where_mujoco_alone_puts_it(tmp_path: Path, house: str, robot: str) -> None:
     (tmp_path / "house.xml").write_text(house)

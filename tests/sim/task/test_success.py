@@ -48,7 +48,7 @@ def two_rooms(wall: str = "wall_10", *, low_m: float = 0.0, high_m: float = 2.5,
 
 
 @given(angle=st.floats(0, 6.28), excess=st.sampled_from([-0.002, 0.002]))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_stop_succeeds_up_to_one_metre_from_the_footprint(angle, excess):
     c, s = np.cos(angle), np.sin(angle)
     corner = np.array([np.copysign(0.3, c), np.copysign(0.2, s)])

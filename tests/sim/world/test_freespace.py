@@ -80,7 +80,7 @@ def test_a_path_from_a_place_that_is_not_free_leads_to_the_nearest_free_cell_fir
 
 
 @given(x=st.floats(-1.9, 1.9), y=st.floats(-1.4, 1.4))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_a_position_is_free_exactly_when_its_distance_to_a_turned_box_exceeds_the_radius(x, y):
     yaw = 0.6
     space = TURNED_BOX_SPACE
@@ -177,7 +177,7 @@ def test_a_gap_joins_two_sides_only_when_the_disc_fits(gap_m, passes):
 
 
 @given(x=st.floats(-2.5, 2.5), y=st.floats(-1.6, 1.6))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_distance_between_cells_is_interpolated(x, y):
     space = OPEN_SPACE
     assert space.distance_at(OPEN_DISTANCE, x, y) == pytest.approx(math.hypot(x - 0.0125, y - 0.0125), abs=0.015)

@@ -106,7 +106,7 @@ def test_a_section_of_no_thickness_is_the_cross_section():
 
 
 @given(angle=st.floats(0.0, math.tau), x=st.floats(-2, 2), y=st.floats(-2, 2))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_distance_to_a_turned_rectangle_is_the_analytic_one(angle, x, y):
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, -s], [s, c]])

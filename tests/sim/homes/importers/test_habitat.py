@@ -296,7 +296,7 @@ _JSON = st.recursive(
 
 
 @pytest.mark.costly
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(_JSON)
 def test_any_scene_is_one_line(tmp_path_factory: pytest.TempPathFactory, scene: Any) -> None:
     file = write_any(tmp_path_factory.getbasetemp() / "any_scene")
@@ -312,7 +312,7 @@ def write_any(folder: Path) -> Path:
     return folder / "x.scene_dataset_config.json"
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.text(st.sampled_from('0123456789ABFx,"\nORC #l'), max_size=80))
 def test_any_annotations_are_read_or_one_line(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
     file = tmp_path_factory.getbasetemp() / "any.txt"

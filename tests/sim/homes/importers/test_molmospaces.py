@@ -88,7 +88,7 @@ def test_broken_houses_are_one_line_with_their_file(tmp_path: Path, capsys: pyte
 
 
 @pytest.mark.costly
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(
     st.recursive(
         st.none() | st.booleans() | st.floats() | st.text(max_size=4),

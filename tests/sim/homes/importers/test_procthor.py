@@ -199,7 +199,7 @@ PATHS = st.sampled_from([
 GIZMO = {"Gizmo_1": Asset("Gizmo", (0.3, 0.3, 0.3))}
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(st.lists(st.tuples(PATHS, VALUES), min_size=1, max_size=2))
 def test_any_change_of_a_house_gives_a_house_or_one_line(changes: list[tuple[tuple[Any, ...], Any]]) -> None:
     house = small_house()

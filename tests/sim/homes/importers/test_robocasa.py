@@ -162,7 +162,7 @@ def test_broken_kitchens_are_one_line_with_their_file(tmp_path: Path) -> None:
 NAMES = st.sampled_from(["cab_1_main_group_main", "robot0_base", "obj", "wall_room_main", "", "a" * 50, "floor"])
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.lists(st.tuples(NAMES, st.sampled_from([".1 .1 .1", "1 1", "0 0 0", "x", "-1 1 1", "1e9 1 1"])), max_size=3))
 def test_any_fixtures_give_a_kitchen_or_one_line(
     tmp_path_factory: pytest.TempPathFactory, bodies: list[tuple[str, str]]

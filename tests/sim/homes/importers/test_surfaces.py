@@ -74,7 +74,7 @@ def test_the_inside_of_a_skirting_board_is_free() -> None:
     assert not ((boxes[:, :3] < middle) & (middle < boxes[:, 3:])).all(axis=1).any()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 2**32 - 1), st.floats(0.1, 0.9))
 def test_joined_cells_cover_the_filled_cells_once_and_nothing_else(seed: int, share: float) -> None:
     filled = np.random.default_rng(seed).random((5, 6, 4)) < share
@@ -219,7 +219,7 @@ def test_parts_by_material_belong_to_the_object_above_them(tmp_path: Path) -> No
     assert nodes == {"Chair_0": 2, "Sofa": 1, "Sofa_cushion": 1, "Object_9": 1}
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.data())
 def test_any_bytes_are_surfaces_or_one_line(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
     content = bytearray(glb(TRIANGLE, CORNERS))
