@@ -80,7 +80,7 @@ EPISODES = {
     "earlier": {"val": 200, "large": 100, "hazards": 100},
     "drift": {"val": 30},
     "traps": {"contact-val": 60},
-    "words": dict.fromkeys(("words-seen", "words-synonyms", "words-unseen", "descriptions", "pictures"), 20),
+    "words": dict.fromkeys(("words-seen", "words-synonyms", "words-unseen", "descriptions", "pictures"), 50),
     "chains": {"chains-val": 20},
     "worlds": {"val": 50, "rooms": 50, "house": 50, "kitchen": 50},
 }
