@@ -72,7 +72,7 @@ _PAGES = {"worlds": "worlds.md", "traps": "traps.md", "words": "words.md"}
 EPISODES = {
     "headline": {"val": 200, "test": 500, SEALED: 200},
     "further": {"large": 100, "hazards": 100, "transfer": 100, "contact-heldout": 60},
-    "ablation": {"val": 100, "hazards": 50},
+    "ablation": {"val": 100, "hazards": 100},
     "explorers": {"val": 100},
     "explorers-large": {"large": 100},
     "semexp": {"val": 100},
