@@ -343,7 +343,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         " --workers 1 --out {tmp}/paper",
     ),
     "stubborn reproduce motions --semantics gt --split hazards --episodes 50 --workers 2": (
-        "stubborn reproduce motions --semantics gt --split hazards --agents oracle --episodes 1 --out {tmp}/paper",
+        "stubborn reproduce motions --semantics gt --split hazards --agents oracle --episodes 1 --workers 1"
+        " --out {tmp}/paper",
     ),
     "stubborn reproduce splits --episodes 200 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",

@@ -102,11 +102,14 @@ def _measures_by_motion(rows: Rows, shown: Sequence[str]) -> ResultTable:
 def _worth_difference(rows: Rows, metric: Metric, a: str, b: str) -> Cell:
     """Returns what the measures are worth with motion b minus their worth with motion a, paired by episode."""
     some = rows["stubborn"][a]
-    worths = [
-        [(metric.value(has) or 0.0) - (metric.value(lacks) or 0.0) for has, lacks in zip(*both, strict=True)]
-        for both in ((rows["stubborn"][motion], rows["stubborn-i"][motion]) for motion in (a, b))
-    ]
-    difference = paired_difference(*worths, houses_of(some), episodes=episodes_of(some))
+    first, second = (
+        [
+            (metric.value(has) or 0.0) - (metric.value(lacks) or 0.0)
+            for has, lacks in zip(rows["stubborn"][motion], rows["stubborn-i"][motion], strict=True)
+        ]
+        for motion in (a, b)
+    )
+    difference = paired_difference(first, second, houses_of(some), episodes=episodes_of(some))
     return Cell(difference, metric.percent, metric.digits, difference=True)
 
 
