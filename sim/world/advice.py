@@ -18,6 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.vocabulary import counted
 from sim.houses.house import Room
 from sim.world.arrangement import DOUBLE_BED_M, MAX_TO_CHAIR_M, TOUCH_M, work_centres
 from sim.world.room_arrangement import SHELF_TO_WALL_M, to_walls_m
@@ -83,8 +84,9 @@ def _household(rooms: Sequence[Room], standing: Sequence[Standing]) -> list[str]
     seats = max((len(_chairs_at(item, standing)) for item in standing if _is_for_meals(item)), default=0)
     needed = min(bedrooms + 1, MAX_SEATS_NEEDED)
     if seats < needed:
-        words = f"{seats} seat" + "s" * (seats != 1)
-        sentences.append(f"the home has {words} at its largest dining table instead of at least {needed}")
+        sentences.append(
+            f"the home has {counted(seats, 'seat')} at its largest dining table instead of at least {needed}"
+        )
     places = sum(2 if _width_m(item) >= DOUBLE_BED_M else 1 for item in standing if item.category == "bed")
     toilets = sum(item.category == "toilet" for item in standing)
     if places >= SECOND_TOILET_FROM and toilets == 1:

@@ -25,6 +25,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.vocabulary import counted
 from sim.gl import mujoco
 from sim.houses.hazards import read_hazards
 from sim.houses.house import Room
@@ -238,8 +239,7 @@ def _number_faults(count: Counter[str], area_m2: float) -> list[str]:
     beds = max(count["bedroom"], count["studio"])
     least = max((number for from_m2, number in BEDROOMS_FROM_M2 if area_m2 >= from_m2), default=0)
     if 0 < beds < least:
-        bedrooms = f"{beds} bedroom" + "s" * (beds != 1)
-        faults.append(f"the home of {area_m2:.0f} m2 has {bedrooms} instead of at least {least}")
+        faults.append(f"the home of {area_m2:.0f} m2 has {counted(beds, 'bedroom')} instead of at least {least}")
     faults += [
         f"the home has {count[kind]} rooms of the kind {kind} for {beds} bedrooms"
         for kind, more in MORE_THAN_BEDROOMS.items()
