@@ -48,17 +48,18 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
     def __init__(self, *, period_s: float = 0.1, time_limit_s: float = MAX_STEPS * ACTION_S, **options: Any) -> None:
         task = options.get("task")
         of_task = task.get("max_steps") if isinstance(task, Mapping) else getattr(task, "max_steps", None)
-        if options.get("max_steps") is not None or of_task not in (None, MAX_STEPS):
-            raise ConfigError("The limit of an episode driven by velocities is time_limit_s, in place of max_steps.")
         if options.get("look"):
             raise ConfigError("look=True adds discrete actions, and this environment takes velocities.")
         if not 0.0 < period_s <= ACTION_S:
             raise ConfigError(f"period_s must lie in (0, {ACTION_S}] s, got {period_s}.")
         if not period_s <= time_limit_s < math.inf:
             raise ConfigError(f"time_limit_s must be finite and at least period_s = {period_s} s, got {time_limit_s}.")
+        periods = math.ceil(time_limit_s / period_s - 1e-6)
+        if options.get("max_steps") is not None or of_task not in (None, MAX_STEPS, periods):
+            raise ConfigError("The limit of an episode driven by velocities is time_limit_s, in place of max_steps.")
         self.period_s, self.time_limit_s = period_s, time_limit_s
         self.metadata = {**self.metadata, "render_fps": max(1, round(1.0 / period_s))}
-        super().__init__(**options, max_steps=math.ceil(time_limit_s / period_s - 1e-6))
+        super().__init__(**options, max_steps=periods)
         self._steps_per_action, self._limit = max(1, round(ACTION_S / period_s)), "time_limit"
         if self._robot.motion != "contacts":
             raise ConfigError(f"Velocities need the motion 'contacts'; this robot has '{self._robot.motion}'.")
