@@ -10,7 +10,7 @@ TORCH_INDEX :=
 unexport PYTHONDONTWRITEBYTECODE
 TORCH := $(shell grep '^torch==' constraints.txt)
 
-.PHONY: setup system-libraries run test test-all lint types docs habitat test-habitat ros test-ros clean
+.PHONY: setup system-libraries run test test-all lint types docs habitat test-habitat ros test-ros lerobot test-lerobot clean
 
 setup: system-libraries $(STAMP)
 
@@ -53,6 +53,15 @@ test-ros: ros
 	@echo "== the tests with ROS 2, in its own environment"
 	@.venv-ros2/bin/python -c "import pytest, rosbags" 2> /dev/null || .venv-ros2/bin/python -m pip install --quiet pytest rosbags
 	.venv-ros2/bin/python -m pytest -q -c /dev/null --rootdir . --import-mode=importlib --noconftest -p no:cacheprovider tests/ros2
+
+lerobot:
+	@test -x .venv-lerobot/bin/lerobot-eval || { $(PYTHON) -m venv .venv-lerobot && \
+	.venv-lerobot/bin/python -m pip install --quiet lerobot --editable . ./lerobot_env_stubborn; }
+
+test-lerobot: lerobot
+	@echo "== the tests with LeRobot, in its own environment"
+	@.venv-lerobot/bin/python -c "import pytest, beartype" 2> /dev/null || .venv-lerobot/bin/python -m pip install --quiet pytest beartype
+	PYTHONPATH=. .venv-lerobot/bin/python -m pytest -q -c /dev/null --rootdir . --import-mode=importlib --noconftest -p no:cacheprovider tests/lerobot
 
 lint: setup
 	$(BIN)/ruff check .
