@@ -163,8 +163,8 @@ def test_an_episode_ends_after_its_time_limit(tmp_path: Path) -> None:
     assert (info["end_reason"], info["num_steps"], info["simulated_s"]) == ("time_limit", 3, pytest.approx(0.6))
     env.close()
     assert make(tmp_path).task_config.max_steps == 6000
-    with_equal_limit = make(tmp_path, period_s=0.1, time_limit_s=2.0, task=TaskConfig(max_steps=20))  # as `stubborn ros`
-    assert with_equal_limit.task_config.max_steps == 20
+    equal = make(tmp_path, period_s=0.1, time_limit_s=2.0, task=TaskConfig(max_steps=20))  # as `stubborn ros`
+    assert equal.task_config.max_steps == 20
 
 
 def test_stop_ends_the_episode_where_the_robot_is(env: ObjectNavVelocityEnv) -> None:
