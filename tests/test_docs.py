@@ -15,14 +15,18 @@ import types
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from sim.core.geometry.grid import GridFrame
 from sim.core.geometry.pose import Pose
+from sim.episodes.splits import load_split
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
+from sim.task.ground_truth import GroundTruth
+from sim.world.world import World
 from stubborn import agent
 from stubborn.detection import distances
 from stubborn.exploration import corners
@@ -166,6 +170,20 @@ def test_every_page_is_in_the_navigation_and_every_entry_a_page() -> None:
 def test_every_picture_in_docs_is_shown() -> None:
     text = "".join(page.read_text(encoding="utf-8") for page in documented.pages())
     assert not [file.name for file in (DOCS / "images").iterdir() if file.name not in text]
+
+
+def test_the_place_to_which_the_ros_example_drives_is_one_where_its_stop_succeeds() -> None:
+    page = (DOCS / "ros.md").read_text(encoding="utf-8")
+    x_m, y_m = map(float, re.findall(r"ros_drive\.py (\S+) (\S+)", page)[0])
+    (number,) = re.findall(r"--wait --only (\w+)", page)
+    (asked,) = (episode for episode in load_split("val").episodes if episode.episode_id == number)
+    world = World(load_split("val").load_house(asked.house))
+    world.restore()
+    region = GroundTruth(world).region(asked.goal, asked.start.floor_z_m)
+    around = (0.0, *np.linspace(0.0, 2.0 * np.pi, 8))
+    reached_m = (0.0, *[0.25] * 8)  # the example stops where it is so near to the end of its path
+    for angle, off_m in zip(around, reached_m, strict=True):
+        assert region.succeeds(x_m + off_m * np.cos(angle), y_m + off_m * np.sin(angle)), (angle, off_m)
 
 
 def test_every_config_field_that_the_differences_name_is_there() -> None:
