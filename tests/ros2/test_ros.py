@@ -320,7 +320,7 @@ def test_each_goal_of_a_chain_is_announced_and_the_agent_keeps_its_memory(
     peer.spin_until(lambda: robot.poll() is not None)
     assert robots.wait(robot) == 0, robots.said(0)
     assert robots.wait(driver) == 0, robots.said(1)
-    assert "drove in 1 episodes" in robots.said(1)
+    assert "drove in 1 episode." in robots.said(1)
     assert [message.data for message in peer.heard["/goal"]] == [*CHAIN]
     announced = [json.loads(message.data) for message in peer.heard["/episode"]]
     told = [(about["number"], about["goal_number"], about["goal"]) for about in announced if "over" not in about]

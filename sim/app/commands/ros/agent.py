@@ -16,6 +16,7 @@ from sim.app.bridges.ros2.loading import require_ros
 from sim.app.composition.agents import find_agent
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
+from sim.core.vocabulary import counted
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,5 +80,5 @@ def main(args: Args) -> int:
         episodes = agent.run(once=args.once)
     finally:
         node.close()
-    print(f"{args.agent} drove in {episodes} episodes.")
+    print(f"{args.agent} drove in {counted(episodes, 'episode')}.")
     return 0
