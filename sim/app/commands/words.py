@@ -88,10 +88,15 @@ def main(args: Args) -> int:
         raise ConfigError(f"--out '{args.out}' must be another folder in '{home.parent}', next to the houses.")
     per_house = -(-args.episodes // len(split.houses))
     work = [(number, house, per_house) for number, house in enumerate(split.houses)]
-    made, by_house = ordered_map(functools.partial(_draw, args), work, workers=args.workers), []
-    for house, drawn in zip(split.houses, made, strict=True):
-        by_house.append(drawn)
-        print(f"{house}: {counted(len(drawn), 'episode')}", flush=True)
+    by_house = list[list[Episode]]()
+    while missing := args.episodes - sum(map(len, by_house)):
+        batch = work[len(by_house) :][: missing if per_house == 1 else None]  # further houses would be left out
+        if not batch:
+            break
+        made = ordered_map(functools.partial(_draw, args), batch, workers=args.workers)
+        for (_, house, _), drawn in zip(batch, made, strict=True):
+            by_house.append(drawn)
+            print(f"{house}: {counted(len(drawn), 'episode')}", flush=True)
     rounds = [drawn[turn] for turn in range(per_house) for drawn in by_house if turn < len(drawn)]
     name = args.out.resolve().name
     episodes = [replace(episode, episode_id=f"{name}_{i:04d}") for i, episode in enumerate(rounds[: args.episodes])]

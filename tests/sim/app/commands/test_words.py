@@ -47,6 +47,19 @@ def test_a_split_of_goals_in_words_uses_the_houses_beside_it(homes, kind, goals)
     assert all((episode.shortest_path_m or 0.0) >= 4.0 for episode in split.episodes)
 
 
+def test_houses_that_are_not_needed_are_not_searched(homes, capsys):
+    folder = homes.parent / "street"
+    folder.mkdir()
+    for name in ("one", "two", "three"):
+        (folder / f"{name}.xml").write_text((homes / "one.xml").read_text())
+    starts = [Episode(f"street_{name}", name, "table", Pose(0.0, -3.0, 0.0)) for name in ("one", "two", "three")]
+    write_split(folder, starts, {"one": {}, "two": {}, "three": {}}, version="1")
+    assert words.main(words.Args(kind="seen", split=str(folder), out=homes.parent / "short", episodes=2)) == 0
+    printed = capsys.readouterr().out
+    assert printed.count(": 1 episode") == 2
+    assert len({episode.house for episode in load_split(homes.parent / "short").episodes}) == 2
+
+
 def test_agents_that_take_no_words_get_none_of_these_episodes(homes):
     made(homes, "seen", "again")
     options = {"split": str(homes.parent / "again"), "semantics": "gt", "episodes": 1}
