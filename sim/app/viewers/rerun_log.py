@@ -59,7 +59,8 @@ _IMAGES = {"rgb": "world/robot/camera/rgb", "depth": "seen/depth", "semantic": "
 def require_rerun(*, window: bool) -> None:
     """Raises ConfigError if Rerun is not installed, or if a window is needed and there is no display."""
     if importlib.util.find_spec("rerun") is None:
-        raise ConfigError("--rerun needs the package rerun-sdk, an extra: pip install 'stubborn-objectnav[rerun]'.")
+        option = "--rerun" if window else "--rerun-save"
+        raise ConfigError(f"{option} needs the package rerun-sdk, an extra: pip install 'stubborn-objectnav[rerun]'.")
     display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     if window and not display and not _viewer_listens():
         raise ConfigError(

@@ -167,7 +167,7 @@ def test_options_that_exclude_each_other_are_reported(changes: dict[str, Any], m
 
 def test_without_rerun_the_message_names_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rerun_log.importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(ConfigError, match=r"pip install .*\[rerun\]"):
+    with pytest.raises(ConfigError, match=r"^--rerun-save needs .*pip install .*\[rerun\]"):
         selection.check(options(rerun_save=True))
 
 
