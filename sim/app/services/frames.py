@@ -148,9 +148,11 @@ class Shelf:
             if difference < best:
                 best, found = difference, frame
         if found is None or best > MAX_DIFFERENCE:
+            last = f"is not one of the last {len(frames)} frames that a simulator sent"
             raise UnknownPictureError(
-                f"This picture is not one of the last {len(frames)} frames that a simulator registered: run the agent "
-                "with STUBBORN_HABITAT=detectors=http://localhost:12181 (docs/habitat.md)."
+                f"This picture {last if frames else 'is unknown, because no simulator has sent a frame'}: run a script "
+                "of Habitat with STUBBORN_HABITAT=detectors=http://localhost:12181 (docs/habitat.md). `stubborn run` "
+                "asks this server with detector.form=posteriors."
             )
         return found
 

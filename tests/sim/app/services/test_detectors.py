@@ -122,6 +122,8 @@ def test_other_bytes_are_no_frame(data: bytes) -> None:
 
 def test_a_picture_finds_its_frame_after_compression_in_either_order_of_channels() -> None:
     shelf, frames = Shelf(), [frame(shade=shade) for shade in range(4)]
+    with pytest.raises(UnknownPictureError, match=r"no simulator has sent a frame.* detector.form=posteriors"):
+        shelf.find(frames[0].rgb)
     for one in frames:
         shelf.add(one)
     for one in frames:
