@@ -186,6 +186,14 @@ def test_the_place_to_which_the_ros_example_drives_is_one_where_its_stop_succeed
         assert region.succeeds(x_m + off_m * np.cos(angle), y_m + off_m * np.sin(angle)), (angle, off_m)
 
 
+@pytest.mark.parametrize("folder", ["habitat_lab", "lerobot", "ros2"])
+def test_tests_in_other_environments_leave_out_our_conftest_and_its_packages(folder: str) -> None:
+    text = (ROOT / "Makefile").read_text(encoding="utf-8")
+    commands = re.findall(rf"python -m pytest [^\n]*tests/{folder}\b", text)
+    assert commands
+    assert all(" --noconftest " in command for command in commands), commands
+
+
 def test_every_config_field_that_the_differences_name_is_there() -> None:
     """`XConfig.field` in a cell, then bare `field`s of the same class."""
     classes = {
