@@ -71,12 +71,12 @@ class PageTable:
 _PAGES = {"worlds": "worlds.md", "traps": "traps.md", "words": "words.md"}
 EPISODES = {
     "headline": {"val": 200, "test": 500, SEALED: 200},
-    "further": {"large": 100, "hazards": 100, "transfer": 100, "contact-heldout": 60},
+    "further": {"large": 200, "hazards": 200, "transfer": 200, "contact-heldout": 60},
     "ablation": {"val": 100, "hazards": 100},
     "explorers": {"val": 100},
     "explorers-large": {"large": 100},
     "semexp": {"val": 100},
-    "network": {"val": 100, "transfer": 100},
+    "network": {"val": 100, "transfer": 200},
     "earlier": {"val": 200, "large": 100, "hazards": 100},
     "drift": {"val": 30},
     "traps": {"contact-val": 60},
