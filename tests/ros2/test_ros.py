@@ -263,6 +263,7 @@ def test_an_agent_drives_a_robot_in_real_time_by_velocities(robots: Robots) -> N
     )  # fmt: skip
     assert robots.wait(robot) == 0, robots.said(0)
     assert robots.wait(agent) == 0, robots.said(1)
+    assert "Episode 1: looking for a sofa.\nEpisode 2: looking for a sofa.\n" in robots.said(1)
     x_m, y_m = -1.5 + 1.25 * math.cos(math.pi / 6) + 0.25, 1.0 + 0.625 - 0.5 * math.cos(math.pi / 6)
     for line in robots.lines():
         assert line["end_reason"] == "stop"
@@ -320,6 +321,7 @@ def test_each_goal_of_a_chain_is_announced_and_the_agent_keeps_its_memory(
     peer.spin_until(lambda: robot.poll() is not None)
     assert robots.wait(robot) == 0, robots.said(0)
     assert robots.wait(driver) == 0, robots.said(1)
+    assert "Episode 1, goal 3: looking for the object of the picture.\n" in robots.said(1)
     assert "drove in 1 episode." in robots.said(1)
     assert [message.data for message in peer.heard["/goal"]] == [*CHAIN]
     announced = [json.loads(message.data) for message in peer.heard["/episode"]]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -14,6 +15,7 @@ from sim.app.composition.setup import Setup
 from sim.app.evaluation.rollout import ask, confidence_of, give_next_goal, next_action, target_of
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import GOAL_CATEGORIES, Action, Agent, CameraModel, Observation, RobotModel, SuccessRule
+from sim.core.vocabulary import with_article
 from sim.env.discrete import ActionController, Limits
 from sim.robot.config import RobotConfig
 from sim.task.config import TaskConfig
@@ -88,11 +90,12 @@ class RobotAgent:
             drive.speed_m_s, drive.turn_speed_rad_s, drive.acceleration_m_s2, drive.turn_acceleration_rad_s2
         )
 
-    def run(self, *, once: bool) -> int:
+    def run(self, *, once: bool, report: Callable[[str], object] = lambda _: None) -> int:
         """Drives in each episode that the robot announces; returns their number.
 
         Args:
             once: end when the robot says that its last episode is over; False: wait for others.
+            report: called with a sentence about each goal when the search for it begins.
 
         Raises:
             AgentError: the agent failed, or does not take a goal.
@@ -114,6 +117,9 @@ class RobotAgent:
                 agent, where = self._agent, f"Agent '{self._name}', reset"
                 ask(where, functools.partial(agent.reset, announced.goal, announced.seed))
             last = announced
+            goal = "the object of the picture" if announced.picture else with_article(announced.goal)
+            number = f", goal {announced.goal_number + 1}" if announced.goal_number else ""
+            report(f"Episode {episodes}{number}: looking for {goal}.")
             self._pursue(announced)
 
     def _require_taken(self, announced: Announced) -> None:

@@ -8,6 +8,7 @@ No simulator runs in this process; the robot may be `stubborn ros`, or a real on
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Literal
@@ -77,7 +78,7 @@ def main(args: Args) -> int:
     try:
         agent = RobotAgent(setup, node, stepped=args.stepped, words=args.words, pictures=args.pictures)
         print(f"{args.agent} waits for a robot.", flush=True)
-        episodes = agent.run(once=args.once)
+        episodes = agent.run(once=args.once, report=functools.partial(print, flush=True))
     finally:
         node.close()
     print(f"{args.agent} drove in {counted(episodes, 'episode')}.")
