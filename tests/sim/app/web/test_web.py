@@ -469,6 +469,9 @@ def test_on_a_phone_no_column_of_the_finished_runs_is_clipped(server: Server, br
         wait_for(lambda: browser.run("return document.querySelectorAll('#run-list tr').length"))
         browser.run("document.querySelector('#run-list button').click()")
         wait_for(lambda: browser.run("return document.querySelectorAll('#episodes tr').length"))
+        names = "const [run, , agent] = [...document.querySelector('#run-list tr').cells].slice(1); "
+        longest = "run.firstElementChild.textContent = 'driven_2026-12-01_04-20-31'; agent.textContent = 'human+agent'"
+        browser.run(names + longest)
         clipped = "[...document.querySelectorAll('#runs .scroll')].filter(box => box.scrollWidth > box.clientWidth)"
         assert browser.run(f"return {clipped}.length") == 0
     finally:
