@@ -16,7 +16,7 @@ from sim.app.commands.reproduce.runs import AgentSetup, RunKey
 from sim.task.result import EpisodeResult
 from tools.research.result_archive import VERSION, ArchivedRun
 
-EPISODES = {"val": 100, "large": 100}
+EPISODES = {"val": 100, "large": 200}
 """The first episodes of each split, which both agents have."""
 THIRDS = ("nearest third", "middle third", "farthest third")
 

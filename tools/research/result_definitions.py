@@ -74,7 +74,7 @@ EPISODES = {
     "further": {"large": 200, "hazards": 200, "transfer": 200, "contact-heldout": 60},
     "ablation": {"val": 100, "hazards": 100},
     "explorers": {"val": 100},
-    "explorers-large": {"large": 100},
+    "explorers-large": {"large": 200},
     "semexp": {"val": 100},
     "network": {"val": 100, "transfer": 200},
     "earlier": {"val": 200, "large": 100, "hazards": 100},
