@@ -64,7 +64,7 @@ class Calibration:
 
     def applied(self, logits: Float[Tensor, "*batch classes rows cols"]) -> Float[Tensor, "*batch classes rows cols"]:
         """Returns the calibrated logits."""
-        return logits * self.scale[:, None, None] + self.offset[:, None, None]
+        return (logits * self.scale[:, None, None]).add_(self.offset[:, None, None])
 
 
 def fit_calibration(

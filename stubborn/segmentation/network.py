@@ -19,7 +19,7 @@ from stubborn.segmentation.inputs import INPUTS
 from stubborn.segmentation.names import NameGroups
 from stubborn.segmentation.preprocess import normalise_rgb, padding, shrink
 from stubborn.segmentation.processor import computes_bf16
-from stubborn.segmentation.rednet import RedNet, folded
+from stubborn.segmentation.rednet import RedNet, as_functions, folded
 
 
 class _Frame(NamedTuple):
@@ -81,6 +81,7 @@ class NetworkSegmenter:
         if self.bf16:  # weights that are converted once, not by autocast at each frame: a fifth faster, same outputs
             self.model = copy.deepcopy(self.model).to(self._dtype)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
+        self.model = as_functions(self.model)
         self.camera = camera or CameraModel()
         self.block_px = block_px
         self.calibration = calibration or Calibration.of_temperature(1.0)
@@ -191,7 +192,9 @@ class NetworkSegmenter:
                 out = self.model.pyramid(colour, second, sides=False)[0].float()
             else:
                 stages, last = self.model.features(colour, second)
-                out = self.model.final_deconv_custom(last).float()
-        pad = padding(*small_depth.shape)
-        own = out[:, :, *pad.inner]
-        return 0.5 * (own[0] + own[1].flip(-1)) if self.mirrored else own[0], [stage[:1] for stage in stages]
+                out = self.model.final_deconv_custom(last)
+            own = out[:, :, *padding(*small_depth.shape).inner]
+            logits = own[0].float()
+            if self.mirrored:  # in place: new memory for each result would take longer than the sums
+                logits.add_(own[1].flip(-1)).mul_(0.5)
+        return logits, [stage[:1] for stage in stages]

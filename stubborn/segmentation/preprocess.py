@@ -76,8 +76,8 @@ def shrink(image: Shaped[np.ndarray, "h w *channels"], block_px: int) -> Shaped[
 
 def normalise_rgb(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "3 padded_h padded_w"]:
     """Returns normalised colour, padded by repeating the edge."""
-    scaled = (rgb.astype(np.float32) / 255.0 - RGB_MEAN) / RGB_STD
-    return pad_edges(scaled.transpose(2, 0, 1))
+    planes = np.ascontiguousarray(rgb.transpose(2, 0, 1)).astype(np.float32)
+    return pad_edges((planes / 255.0 - RGB_MEAN[:, None, None]) / RGB_STD[:, None, None])
 
 
 def normalise_depth(

@@ -10,9 +10,11 @@ conversion.
 from __future__ import annotations
 
 import copy
+import functools
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import torch
 from jaxtyping import Float
@@ -287,6 +289,57 @@ def folded(model: RedNet) -> RedNet:
                 setattr(module, conv_name, fuse_conv_bn_eval(conv, norm, isinstance(conv, nn.ConvTranspose2d)))
                 setattr(module, norm_name, nn.Identity())
     return copied
+
+
+def as_functions(model: RedNet) -> RedNet:
+    """Replaces all modules of a folded network by functions with the same results, and returns the network.
+
+    A pass then takes a sixth less time on one core, because a call of a module costs much more than one of a function.
+    The network has no parameters and no modules afterwards: its type and memory format must be final.
+    """
+    _function_of(model)
+    return model
+
+
+def _function_of(module: nn.Module) -> Callable[..., Tensor]:
+    """Returns what a module computes; its modules become functions, which are attributes of the same names."""
+    match module:
+        case nn.Conv2d():
+            return functools.partial(
+                _conv2d, (module.weight, module.bias, module.stride, module.padding, module.dilation, module.groups)
+            )
+        case nn.ConvTranspose2d():
+            return functools.partial(
+                _conv_transpose2d, (module.weight, module.bias, module.stride, module.padding, module.output_padding)
+            )
+        case nn.ReLU():
+            return torch.relu_
+        case nn.Identity():
+            return _same
+        case nn.Sequential():
+            return functools.partial(_in_turn, [_function_of(child) for child in module])
+    for name, child in list(module.named_children()):
+        delattr(module, name)
+        setattr(module, name, _function_of(child))
+    return module.forward
+
+
+def _conv2d(arguments: tuple[Any, ...], x: Tensor) -> Tensor:
+    return torch.conv2d(x, *arguments)
+
+
+def _conv_transpose2d(arguments: tuple[Any, ...], x: Tensor) -> Tensor:
+    return torch.conv_transpose2d(x, *arguments)
+
+
+def _same(x: Tensor) -> Tensor:
+    return x
+
+
+def _in_turn(functions: Sequence[Callable[[Tensor], Tensor]], x: Tensor) -> Tensor:
+    for function in functions:
+        x = function(x)
+    return x
 
 
 def _conv3x3(channels_in: int, channels_out: int, stride: int = 1) -> nn.Conv2d:

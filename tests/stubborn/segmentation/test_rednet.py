@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from sim.core.interface import ConfigError
-from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig, folded
+from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig, as_functions, folded
 
 NAMES_AND_SHAPES = Path(__file__).with_name("rednet_state_dict.txt")
 
@@ -80,6 +80,26 @@ def test_folding_changes_neither_the_outputs_nor_the_model(bottleneck: bool) -> 
     assert before.std() > 0
     assert torch.allclose(fast, before, rtol=0, atol=1e-4 * float(before.abs().max()))
     assert not any(isinstance(module, torch.nn.BatchNorm2d) for module in folded(model).modules())
+
+
+@pytest.mark.parametrize("bottleneck", [False, True])
+def test_a_network_of_functions_gives_the_same_outputs(bottleneck: bool) -> None:
+    torch.manual_seed(2)
+    blocks = (1, 2, 1, 1)
+    config = RedNetConfig(
+        width=8, encoder_blocks=blocks, bottleneck=bottleneck, decoder_blocks=blocks, names=("chair", "stool")
+    )
+    model = folded(RedNet(config).eval())
+    rgb, depth = torch.randn(1, 3, 64, 96), torch.randn(1, 1, 64, 96)
+    with torch.inference_mode():
+        logits, (stages, _) = model(rgb, depth), model.features(rgb, depth)
+        assert model.names_head is not None
+        names = model.names_head(stages)
+        fast = as_functions(model)
+        assert list(fast.modules()) == [fast]
+        assert logits.std() > 0
+        assert torch.equal(fast(rgb, depth), logits)
+        assert torch.equal(fast.names_head(fast.features(rgb, depth)[0]), names)  # pyright: ignore[reportOptionalCall]
 
 
 def test_every_parameter_has_a_gradient_from_the_five_outputs() -> None:
