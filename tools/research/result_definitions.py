@@ -81,7 +81,7 @@ EPISODES = {
     "drift": {"val": 30},
     "traps": {"contact-val": 60},
     "words": dict.fromkeys(("words-seen", "words-synonyms", "words-unseen", "descriptions", "pictures"), 50),
-    "chains": {"chains-val": 20},
+    "chains": {"chains-val": 40},
     "worlds": {"val": 50, "rooms": 50, "house": 50, "kitchen": 50},
 }
 """The first episodes of each split that a table has."""
