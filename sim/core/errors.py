@@ -43,9 +43,9 @@ class AgentError(ObjectNavError, RuntimeError):
     """An agent raised an error, or returned a value that is not an action; the message names agent and step."""
 
 
-def did_you_mean(name: str, names: Iterable[str]) -> str:
-    """Returns " Did you mean 'x'?" if one of the names is similar, else ""."""
-    similar = difflib.get_close_matches(name, names, n=1)
+def did_you_mean(name: str, names: Iterable[str], similarity: float = 0.6) -> str:
+    """Returns " Did you mean 'x'?" if the similarity of one of the names is at least this (1: the same), else ""."""
+    similar = difflib.get_close_matches(name, names, n=1, cutoff=similarity)
     return f" Did you mean '{similar[0]}'?" if similar else ""
 
 

@@ -207,8 +207,10 @@ def _noun_phrase(text: str, phrase: str, beside: tuple[Beside, ...]) -> Wish:
 
 
 def _unknown(word: str, before: str = "") -> WishError:
+    objects = [known for known, (relation, _) in vocabulary().words.items() if relation != "other"]
+    conditions = [*_COLOURS, *MATERIALS, *_SIZES, *_SHAPES, *ROOMS]
     if before:
-        hint = did_you_mean(word, [*_COLOURS, *MATERIALS, *_SIZES, *_SHAPES, *ROOMS])
+        hint = did_you_mean(f"{word} {before}", objects, 0.9) or did_you_mean(word, conditions, 0.7)
         return WishError(
             f"The word '{word}' before '{before}' is not known.{hint} Known are colours "
             f"({', '.join(get_args(ColourName))}), materials, 'round', 'largest' and 'smallest', and rooms."
@@ -216,8 +218,10 @@ def _unknown(word: str, before: str = "") -> WishError:
     if (match := _IN_UNKNOWN.match(word)) and vocabulary().find(match[1]) is not None:
         rooms = ", ".join(dict.fromkeys(kinds[0].replace("_", " ") for kinds in ROOMS.values()))
         return WishError(f"No room is known as '{match[2]}'.{did_you_mean(match[2], ROOMS)} Rooms: {rooms}.")
-    objects = [known for known, (relation, _) in vocabulary().words.items() if relation != "other"]
-    return WishError(f"No object is known as '{word}'.{did_you_mean(word, objects)}")
+    condition, _, rest = word.partition(" ")
+    while rest and condition in conditions:
+        word, (condition, _, rest) = rest, rest.partition(" ")
+    return WishError(f"No object is known as '{word}'.{did_you_mean(word, objects, 0.82)}")
 
 
 def require_goal(goal: str) -> None:

@@ -78,6 +78,8 @@ def test_a_room_may_stand_before_the_name_unless_both_are_a_word():
     ("text", "words"),
     [
         ("the grene chair", "'grene' before 'chair' is not known. Did you mean 'green'"),
+        ("the dinning table", "'dinning' before 'table' is not known. Did you mean 'dining table'"),
+        ("a blue wooden cuch", "No object is known as 'cuch'. Did you mean 'couch'"),
         ("spaceship", "No object is known as 'spaceship'"), ("flower bed", "No object is known as 'flower bed'"),
         ("the red chair in the batroom", "No room is known as 'batroom'. Did you mean 'bathroom'? Rooms: "),
         ("chair inside my bed room by the bed", "No room is known as 'bed room'. Did you mean 'bedroom'"),
@@ -92,6 +94,12 @@ def test_an_unknown_word_is_named_and_not_guessed(text, words):
     with pytest.raises(WishError) as refused:
         parse_wish(text)
     assert words in str(refused.value)
+
+
+@pytest.mark.parametrize("word", ["elephant", "umbrella"])
+def test_a_message_suggests_nothing_for_an_object_that_no_home_has(word):
+    with pytest.raises(WishError, match=f"^No object is known as '{word}'.$"):
+        parse_wish(f"the red {word}")
 
 
 def test_goals_are_categories_labels_or_words():
