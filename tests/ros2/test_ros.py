@@ -446,7 +446,7 @@ def test_an_episode_that_was_reset_or_given_up_counts_as_an_error(robots: Robots
     action.publish(UInt8(data=9))
     action.publish(UInt8(data=0))
     peer.spin_until(lambda: json.loads(peer.heard["/episode"][-1].data)["number"] == 3)
-    peer.call("next_episode", Trigger)
+    assert peer.call("next_episode", Trigger).success
     assert robots.wait(robot) == 1
     lines = robots.lines()
     assert [line["end_reason"] for line in lines] == ["error", "error"]

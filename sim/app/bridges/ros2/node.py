@@ -190,11 +190,8 @@ class RobotNode:
     def _flagging(self, name: str) -> Callable[[Any, Any], Any]:
         def call(request: Any, response: Any) -> Any:
             del request
-            if name == "step" and not self.requests.paused:
-                response.success, response.message = False, "Time is not paused."
-                return response
-            self.requests.raise_flag(name)
-            response.success = True
+            refusal = self.requests.raise_flag(name)
+            response.success, response.message = refusal is None, refusal or ""
             return response
 
         return call

@@ -44,15 +44,22 @@ class Requests:
     _flags: set[str] = field(default_factory=set)
     """Of `stop`, `step`, `reset` and `next_episode`."""
     _paused: bool = False
+    _running: bool = False
 
     def begin(self) -> None:
         """Forgets the requests for the last episode; a pause stays."""
         with self._changed:
+            self._running = True
             self.counts = Counts()
             self.stop_target = self.stop_confidence = None
             self._velocity, self._velocity_at_s = (0.0, 0.0), -math.inf
             self._actions.clear()
             self._flags.clear()
+
+    def end(self) -> None:
+        """Refuses further requests until the next episode begins."""
+        with self._changed:
+            self._running = False
 
     def command(self, speed_m_s: float, rate_rad_s: float, now_s: float) -> None:
         """Takes a velocity at a simulated time; one that is not finite is refused."""
@@ -93,12 +100,20 @@ class Requests:
                 return Action.STOP
             return self._actions.popleft() if self._actions else None
 
-    def raise_flag(self, name: str) -> None:
-        """Asks for something that happens once; `step` counts during a pause only."""
+    def raise_flag(self, name: str) -> str | None:
+        """Asks for something that happens once.
+
+        Returns:
+            Why the request is refused: no episode is running, or `step` without a pause; None: it is accepted.
+        """
         with self._changed:
-            if name != "step" or self._paused:
-                self._flags.add(name)
+            if not self._running:
+                return "No episode is running."
+            if name == "step" and not self._paused:
+                return "Time is not paused."
+            self._flags.add(name)
             self._changed.notify_all()
+            return None
 
     def take(self, name: str) -> bool:
         """Returns whether something was asked for, and forgets it."""

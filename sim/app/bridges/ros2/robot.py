@@ -171,6 +171,7 @@ class LiveRobot:
 
     def end(self, result: RolloutResult, wall_s: float) -> None:
         """Publishes the result of an episode, with the numbers of messages and periods."""
+        self.node.requests.end()
         counts = asdict(self.node.requests.counts)
         speed = round(result.simulated_s / wall_s, 3) if wall_s > 0.0 else None
         about = {"number": self._number, "result": msgspec.to_builtins(result), "node": counts | {"speed": speed}}

@@ -105,8 +105,25 @@ def test_actions_come_in_order_and_those_for_an_earlier_observation_are_refused(
     assert (requests.counts.commands, requests.counts.refused_commands) == (4, 2)
 
 
-def test_a_new_episode_forgets_requests_and_keeps_the_pause() -> None:
+def running() -> Requests:
+    """Returns the requests during an episode."""
     requests = Requests()
+    requests.begin()
+    return requests
+
+
+def test_requests_between_two_episodes_are_refused_with_the_reason() -> None:
+    requests = Requests()
+    assert requests.raise_flag("next_episode") == "No episode is running."
+    requests.begin()
+    assert requests.raise_flag("next_episode") is None
+    requests.end()
+    assert requests.raise_flag("stop") == "No episode is running."
+    assert [requests.asked("next_episode"), requests.asked("stop")] == [True, False]
+
+
+def test_a_new_episode_forgets_requests_and_keeps_the_pause() -> None:
+    requests = running()
     requests.command(0.3, 0.1, 1.0)
     requests.act(1)
     requests.raise_flag("stop")
@@ -121,7 +138,7 @@ def test_a_new_episode_forgets_requests_and_keeps_the_pause() -> None:
 
 
 def test_a_flag_ends_a_wait_and_is_taken_once() -> None:
-    requests = Requests()
+    requests = running()
     requests.raise_flag("reset")
     begin_s = time.monotonic()
     requests.wait(5.0)
@@ -130,8 +147,8 @@ def test_a_flag_ends_a_wait_and_is_taken_once() -> None:
 
 
 def test_a_step_stays_until_an_action_has_come_and_ends_with_the_pause() -> None:
-    requests = Requests()
-    requests.raise_flag("step")  # without a pause it has no meaning
+    requests = running()
+    assert requests.raise_flag("step") == "Time is not paused."
     assert not requests.asked("step")
     requests.pause(True)
     requests.raise_flag("step")
@@ -145,7 +162,7 @@ def test_a_step_stays_until_an_action_has_come_and_ends_with_the_pause() -> None
 
 @pytest.mark.parametrize("flag", ["stop", "step"])
 def test_a_paused_agent_stops_and_steps(flag: str) -> None:
-    requests, clock = Requests(), []
+    requests, clock = running(), []
     robot: Any = SimpleNamespace(
         node=SimpleNamespace(requests=requests), publish=lambda _: None, repeat_clock=lambda: clock.append(1)
     )
