@@ -38,6 +38,7 @@ _ONE_OF: Mapping[str, str] = MappingProxyType(
 )
 """What one object of a category is called where the name of the category is no name for it."""
 _OPENING = re.compile(r"^(find|go to|look for) ", re.IGNORECASE)
+_OBJECT = re.compile(r"_\d+$")
 _ARTICLE = re.compile(r"^(the|an?) ", re.IGNORECASE)
 _AFTER_NOUN = re.compile(r" (?:of|in|inside|from|on|under|below|next to|beside|near|by|at|with) ")
 _VOWEL_SOUND = re.compile(r"[aeio]|u(?!ni|ti|se)|hour", re.IGNORECASE)
@@ -103,7 +104,9 @@ def normal_form(phrase: str) -> str:
 
 
 def plain(name: str) -> str:
-    """Returns a name as people read it, "chest of drawers"; a goal in words stays as it is."""
+    """Returns a name as people read it, "chest of drawers"; a goal in words and an object's name, "towel_00", stay."""
+    if _OBJECT.search(name):
+        return name
     return "television" if name == "tv_monitor" else name.replace("_", " ")
 
 

@@ -12,7 +12,8 @@
     | segments  | segments  | in sight  | legends, state of the agent     |
     +-----------+-----------+-----------+---------------------------------+
 
-Without a map of the agent, the plan fills the area of both; without a segmentation, its pictures are left out.
+Without a map of the agent, the plan fills the area of both; without a segmentation, or with the true one, the picture
+of the agent's segments is left out.
 A text that is too wide for its place is written smaller.
 """
 
@@ -136,13 +137,14 @@ class FrameComposer:
         self._picture = picture
         self.goal, self._camera, self._max_steps = goal, camera, max_steps
         self._depth = _LOW_DEPTH if scores else _DEPTH
-        self._segments = ("predicted", "true") if names else ("true",)
+        is_true = segmentation == "ground truth"
+        self._segments = ("predicted", "true") if names and not is_true else ("true",)
         self._plan_left = _MAP_LEFT if map_legend is None else _PLAN_LEFT
         self.plan_px = WIDTH_PX - 8 - self._plan_left, MAP_PX
         """Width and height of the plan."""
         module, own, last = segmentation.rpartition(":")
         named = f"by {module.rpartition('.')[2]}:{last}" if own else f"segmentation ({segmentation})"
-        captions = {"predicted": named, "true": "segmentation (true)"}
+        captions = {"predicted": named, "true": named if is_true else "segmentation (true)"}
         self._ground = np.full((HEIGHT_PX, WIDTH_PX, 3), PAPER, np.uint8)
         frame = self._ground
         frame[:_HEADER_PX] = HEADER

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sim.core.interface import MPCAT40
-from sim.core.vocabulary import is_plural, vocabulary, with_article
+from sim.core.vocabulary import is_plural, plain, vocabulary, with_article
 
 WORDED = {
     "chair": "a chair",
@@ -31,6 +31,10 @@ WORDED = {
 @pytest.mark.parametrize("goal", WORDED)
 def test_a_goal_has_the_article_of_its_noun(goal: str) -> None:
     assert with_article(goal) == WORDED[goal]
+
+
+def test_the_name_of_an_object_stays_as_files_have_it() -> None:
+    assert [plain("chest_of_drawers"), plain("tv_monitor_00")] == ["chest of drawers", "tv_monitor_00"]
 
 
 @pytest.mark.parametrize(

@@ -268,6 +268,15 @@ def test_the_picture_of_a_goal_lies_over_the_camera_picture(written: list[tuple[
     assert rows.max() < 300
 
 
+@pytest.mark.parametrize(("name", "captions"), [
+    ("ground truth", ["segmentation (ground truth)"]),
+    ("rednet", ["segmentation (rednet)", "segmentation (true)"]),
+])  # fmt: skip
+def test_a_true_segmentation_is_shown_once(name: str, captions: list[str], written: list[tuple[str, Box]]) -> None:
+    overlay.FrameComposer("bed", CameraModel(), plan_legend=(), scores=True, names=True, segmentation=name)
+    assert [text for text, _ in written if text.startswith("segmentation")] == captions
+
+
 @pytest.mark.parametrize("shape", [(360, 640), (480, 480), (64, 48)])
 def test_a_camera_of_another_shape_keeps_its_proportions(shape: tuple[int, int]) -> None:
     images = {
