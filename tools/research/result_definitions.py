@@ -79,11 +79,8 @@ EPISODES = {
     "network": {"val": 100, "transfer": 200},
     "earlier": {"val": 200, "large": 100, "hazards": 100},
     "drift": {"val": 30},
-    "traps": {"contact-val": 60},
-    "words": {
-        **dict.fromkeys(("words-seen", "words-synonyms", "words-unseen"), 150),
-        **dict.fromkeys(("descriptions", "pictures"), 100),
-    },
+    "traps": {"contact-val": 150},
+    "words": dict.fromkeys(("words-seen", "words-synonyms", "words-unseen", "descriptions", "pictures"), 150),
     "chains": {"chains-val": 40},
     "worlds": {"val": 50, "rooms": 50, "house": 50, "kitchen": 50},
 }
