@@ -68,7 +68,7 @@ class PageTable:
         return _PAGES.get(self.name, "results.md")
 
 
-_PAGES = {"worlds": "worlds.md", "traps": "traps.md", "words": "words.md"}
+_PAGES = {"worlds": "worlds.md", "traps": "traps.md", "words": "words.md", "chain-agents": "words.md"}
 EPISODES = {
     "headline": {"val": 200, "test": 500, SEALED: 200},
     "further": {"large": 200, "hazards": 200, "transfer": 200, "contact-heldout": 60},
@@ -82,20 +82,19 @@ EPISODES = {
     "traps": {"contact-val": 150},
     "words": dict.fromkeys(("words-seen", "words-synonyms", "words-unseen", "descriptions", "pictures"), 150),
     "chains": {"chains-val": 40},
+    "chain-agents": {"chains-val": 40},
     "worlds": {"val": 50, "rooms": 50, "house": 50, "kitchen": 50},
 }
 """The first episodes of each split that a table has."""
 _ORACLE_AND_BOTH = ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet")
 AGENTS: Mapping[str, Mapping[str, Sequence[str]]] = {
     "headline": {"val": _ORACLE_AND_BOTH, "test": _ORACLE_AND_BOTH, SEALED: _ORACLE_AND_BOTH},
-    "further": {
-        "large": _ORACLE_AND_BOTH,
-        "hazards": _ORACLE_AND_BOTH[1:],
-        "transfer": _ORACLE_AND_BOTH[3:],
-        "contact-heldout": _ORACLE_AND_BOTH[1:3],
-    },
+    "further": dict.fromkeys(EPISODES["further"], _ORACLE_AND_BOTH),
     "worlds": dict.fromkeys(("val", "rooms", "house", "kitchen"), _ORACLE_AND_BOTH),
-    "words": dict.fromkeys(EPISODES["words"], ("oracle gt", "frontier gt", "stubborn-plus gt", "stubborn-plus rednet")),
+    "words": dict.fromkeys(
+        EPISODES["words"], ("oracle gt", "frontier gt", "stubborn gt", "stubborn-plus gt", "stubborn-plus rednet")
+    ),
+    "chain-agents": {"chains-val": ("oracle gt", "stubborn gt", "stubborn-plus gt")},
 }
 """Agents and segmentation by split; `further` has harder splits, `worlds` the houses of other projects."""
 CHAINS = (
@@ -112,6 +111,8 @@ GOAL_GROUPS = {
     "second_visit": "second visits",
 }
 """The goals of chains by kind, as `sim.app.evaluation.summary.summarise` names them, and their names in words.md."""
+EXPLORATORY = (("worlds", "val"), ("further", "contact-val"))
+"""Tables and splits whose comparisons are primary in another table, or of a split that agents were developed on."""
 GAINS = ("headline", "further")
 """Tables whose primary comparisons stubborn_plus.md shows."""
 ABLATION = {
@@ -189,9 +190,10 @@ def comparisons() -> Iterator[Comparison]:
             rows = [RowKey.of(split, EPISODES[table][split], *name.split()) for name in names]
             for second, first in itertools.combinations(rows, 2):
                 one, other = second.run.setup, first.run.setup
-                of_headline = table == "worlds" and split == "val"
                 is_primary = (
-                    one.agent in ("stubborn", "frontier") and one.semantics == other.semantics and not of_headline
+                    (one.agent, other.agent) in (("stubborn", "stubborn-plus"), ("frontier", "stubborn-plus"))
+                    and one.semantics == other.semantics
+                    and (table, split) not in EXPLORATORY
                 )
                 yield Comparison(table, first, second, is_primary)
     for split in EPISODES["ablation"]:
