@@ -53,8 +53,6 @@ if TYPE_CHECKING:
 
 ItemT = TypeVar("ItemT")
 ArgsT = TypeVar("ArgsT", bound="DataclassInstance")
-USAGE_ERRORS = (ObjectNavError,)
-"""Errors that the user can correct; they are printed in one line, without a traceback."""
 DEBUG_HELP = "Every command also takes --debug, which shows the traceback of an error."
 
 OnUnlessNo = Annotated[bool, tyro.conf.arg(help_behavior_hint="")]
@@ -129,7 +127,7 @@ def run(
         except BrokenPipeError:  # the reader of the output has ended, as `head` does
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
             return 1
-        except USAGE_ERRORS as error:
+        except ObjectNavError as error:
             return _refused(str(error))
         except OSError as error:
             names = " and ".join(f"'{name}'" for name in (error.filename, error.filename2) if name is not None)

@@ -7,6 +7,7 @@ that their bodies stay in the pose of the file. Free joints remain, so that chai
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from typing import Any
 
@@ -98,9 +99,6 @@ def _count(kind: str, names: list[str]) -> str:
 
 def _list(names: Iterable[str]) -> str:
     """Returns the first `MAX_NAMES` different names, each with its number of occurrences."""
-    counts: dict[str, int] = {}
-    for name in names:
-        counts[name] = counts.get(name, 0) + 1
-    shown = [name if count == 1 else f"{name} ({count} x)" for name, count in counts.items()]
+    shown = [name if count == 1 else f"{name} ({count} x)" for name, count in Counter(names).items()]
     more = f" and {len(shown) - MAX_NAMES} more" if len(shown) > MAX_NAMES else ""
     return ", ".join(shown[:MAX_NAMES]) + more

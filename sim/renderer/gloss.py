@@ -21,13 +21,13 @@ def geom_gloss(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float32]:
     material = model.geom_matid
     plain = material < 0
     transparency = 1.0 - opacity(model)
-    reflectance = _of_geoms(model.mat_reflectance, material, 0.0)
-    polish = _of_geoms(model.mat_specular * model.mat_shininess, material, 0.0)
+    reflectance = _of_geoms(model.mat_reflectance, material)
+    polish = _of_geoms(model.mat_specular * model.mat_shininess, material)
     gloss = np.maximum.reduce([transparency, reflectance, polish])
     gloss[plain & np.isin(labels.geom_category, _GLASS_CATEGORIES)] = 1.0
     return np.clip(gloss, 0.0, 1.0).astype(np.float32)
 
 
-def _of_geoms(of_materials: NDArray, material: NDArray[np.int32], without: float) -> NDArray[np.float64]:
-    """Returns a material property (ngeom,) by geom; `without` for geoms without a material."""
-    return np.append(of_materials.astype(np.float64), without)[material]
+def _of_geoms(of_materials: NDArray, material: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Returns a material property (ngeom,) by geom; 0 for geoms without a material."""
+    return np.append(of_materials.astype(np.float64), 0.0)[material]

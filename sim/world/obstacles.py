@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sim.core.geometry.convex import ConvexPolygon, polygon_from_above
 from sim.core.geometry.convex_kernels import mark_inside
-from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.grid import GridFrame, runs_of
 from sim.core.interface import MPCAT40_ID, RobotModel
 from sim.gl import mujoco
 from sim.houses.geoms import UNBOUNDED_M, geom_polytope
@@ -77,7 +77,7 @@ def _edges(floors: list[tuple[float, ConvexPolygon]], climb_m: float) -> list[Co
     beside_m = cv2.erode(height_m, np.ones((3, 3), np.uint8))
     upper = np.isfinite(height_m) & (height_m - beside_m > climb_m)
     rows_of_edges = np.flatnonzero(upper.any(axis=1)).tolist()
-    return [_rectangle(frame, row, *ends) for row in rows_of_edges for ends in _runs(upper[row])]
+    return [_rectangle(frame, row, *ends) for row in rows_of_edges for ends in runs_of(upper[row])]
 
 
 def _heights(frame: GridFrame, floors: list[tuple[float, ConvexPolygon]]) -> NDArray[np.float32]:
@@ -90,12 +90,6 @@ def _heights(frame: GridFrame, floors: list[tuple[float, ConvexPolygon]]) -> NDA
         mark_inside(covered, x_m, y_m, plan.normals, plan.offsets_m)
         height_m[window][covered] = top_m
     return height_m
-
-
-def _runs(cells: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Returns first and last + 1 of each run of True."""
-    ends = np.flatnonzero(np.diff(np.concatenate([[False], cells, [False]]).astype(np.int8)))
-    return list(zip(ends[::2].tolist(), ends[1::2].tolist(), strict=True))
 
 
 def _rectangle(frame: GridFrame, row: int, first: int, end: int) -> ConvexPolygon:

@@ -54,7 +54,7 @@ class Fusion:
     """Log-odds to add for a category: positive where the segmenter misses it more often than it reports it falsely."""
 
     def __post_init__(self) -> None:
-        unknown = sorted(set(self.offsets) - set(MPCAT40[1:]) | set(self.offsets) & set(SURFACES))
+        unknown = sorted(set(self.offsets) - set(_OBJECTS))
         if unknown:
             raise ConfigError(f"Fusion.offsets must name categories of objects, got '{unknown[0]}'.")
         if not (self.sharpness > 0.0 and self.floor > 0.0 and min(self.ring_weights, default=0.0) > 0.0):

@@ -322,7 +322,7 @@ def test_a_challenge_of_2021_evaluates_an_agent(tmp_path: Path) -> None:
 def test_an_environment_class_of_2021_chooses_sensors_scenes_and_data_set(tmp_path: Path) -> None:
     (tmp_path / "task.yaml").write_text(
         "SIMULATOR:\n  SEMANTIC_SENSOR: {WIDTH: 64, HEIGHT: 48}\n  AGENT_0: {SENSORS: ['SEMANTIC_SENSOR']}\n"
-        "TASK: {MEASUREMENTS: ['SPL']}\nDATASET: {TYPE: PointNav-v1, EPISODES_DIR: 'episodes/'}\n"
+        "TASK: {MEASUREMENTS: ['SPL']}\nDATASET: {TYPE: PointNav-v1, EPISODES_DIR: 'episodes/'}\nSEED: 7\n"
     )
     (tmp_path / "old.py").write_text(
         "from habitat import Config, RLEnv, make_dataset\n"
@@ -338,9 +338,11 @@ def test_an_environment_class_of_2021_chooses_sensors_scenes_and_data_set(tmp_pa
         "env = Own(config, make_dataset(config.DATASET.TYPE, config=config.DATASET))\n"
         "observations = env.reset()\n"
         "print(observations['semantic'].shape, env.step(1)[3]['spl'], config.DATASET.EPISODES_DIR)\n"
+        "cameras = env.habitat_env.sim.get_agent_state().sensor_states\n"
+        "print(config.SEED, len({tuple(camera.position) for camera in cameras.values()}), 'height of the cameras')\n"
         "print(env.habitat_env.sim.config.SCENE, {episode.scene_id for episode in env.episodes})\n"
     )
     done = run(["habitat", "old.py", "--split", "val"], tmp_path)
-    assert "(48, 64, 1) 0.0 episodes/\nmjcf_houses/val/val_05.xml {'mjcf_houses/val/val_05.xml'}" in done.stdout, (
-        done.stderr[-2000:]
-    )
+    house = "mjcf_houses/val/val_05.xml"
+    printed = f"(48, 64, 1) 0.0 episodes/\n7 1 height of the cameras\n{house} {{'{house}'}}"
+    assert printed in done.stdout, done.stderr[-2000:]

@@ -117,7 +117,7 @@ class AgentProcess:
         self._received, self._tail, self._begun = bytearray(), bytearray(), False
         self._printed_bytes = 0
         self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
-        self._end = ""
+        self._how_it_ended = ""
         """A text on how the process has ended, for messages; "" while it runs."""
         self._number = 0
 
@@ -179,8 +179,8 @@ class AgentProcess:
                 if self._received:
                     raise AgentError("it wrote more than one answer")
                 return answer
-            if self._end:
-                raise AgentError(f"its process {self._end} before it answered")
+            if self._how_it_ended:
+                raise AgentError(f"its process {self._how_it_ended} before it answered")
             if waited_s >= within_s:
                 raise AgentError(f"no answer within {within_s:g} s")
             for number, event in self._poll.poll(1e3 * min(TICK_S, within_s - waited_s)):
@@ -200,7 +200,8 @@ class AgentProcess:
         except OSError:
             self._poll.unregister(self._source)
             self._wait_for_end()
-            raise AgentError(f"its process {self._end or 'closed its standard input'} before it answered") from None
+            how = self._how_it_ended or "closed its standard input"
+            raise AgentError(f"its process {how} before it answered") from None
         while pending and done >= len(pending[0]):
             done -= len(pending.pop(0))
         if pending:
@@ -220,19 +221,19 @@ class AgentProcess:
         if number == self._sink:
             if not content:
                 self._wait_for_end()
-                self._end = self._end or "closed its standard output"
+                self._how_it_ended = self._how_it_ended or "closed its standard output"
             self._received += content
         elif number == self._printed:
             self._keep(content)
-        elif not self._end:  # `_wait_for_end` may have read the line already
-            self._end = _end_in_words(content)
+        elif not self._how_it_ended:  # `_wait_for_end` may have read the line already
+            self._how_it_ended = _end_in_words(content)
             self._drain()
 
     def _wait_for_end(self) -> None:
         """Waits up to `TICK_S` for the line of the guard: a closed pipe usually means that the process has ended."""
-        if not self._end and select.select([self._control], [], [], TICK_S)[0]:
+        if not self._how_it_ended and select.select([self._control], [], [], TICK_S)[0]:
             with contextlib.suppress(OSError):
-                self._end = _end_in_words(self._control.recv(_CHUNK_BYTES))
+                self._how_it_ended = _end_in_words(self._control.recv(_CHUNK_BYTES))
             self._drain()
 
     def _drain(self) -> None:

@@ -15,7 +15,7 @@ import math
 import os
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import cv2
 import msgspec
@@ -100,7 +100,7 @@ def main(args: Args) -> int:
     console.print(_table(figures))
     console.print(f"{processor()}, {describe_gl()}, mujoco {mujoco.__version__}", soft_wrap=True)
     if args.out is not None:
-        write_atomically(args.out, msgspec.json.format(msgspec.json.encode([asdict(figure) for figure in figures])))
+        write_atomically(args.out, msgspec.json.format(msgspec.json.encode(figures)))
     return 0
 
 

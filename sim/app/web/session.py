@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Protocol
 
-from sim.app.cli import USAGE_ERRORS
 from sim.app.composition.agents import free_agent
 from sim.app.composition.driven import HUMAN
 from sim.app.composition.environments import drawn_episodes
@@ -27,7 +26,7 @@ from sim.app.web.controls import Controls, EpisodeRequest, Interrupted
 from sim.app.web.driven import DrivenRuns
 from sim.app.web.hints import Hints
 from sim.app.web.pictures import Pictures, in_sight
-from sim.core.errors import EpisodeError, debug
+from sim.core.errors import EpisodeError, ObjectNavError, debug
 from sim.core.goals import NO_GOAL, GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, Action, Agent, Observation, Overridable, StatesTarget
 from sim.core.reading import printable
@@ -111,7 +110,7 @@ class Session:
                 self._run_episode(request)
             except Interrupted:
                 self._show_state(request, "idle", "The episode was ended; nothing was recorded.")
-            except USAGE_ERRORS as error:
+            except ObjectNavError as error:
                 self._show_state(request, "failed", str(error))
             except BaseException as error:  # a user's code may raise anything, and this thread must continue
                 if debug():
@@ -165,7 +164,7 @@ class Session:
         counts = {"person_steps": shared.person_steps, "hint_steps": shared.hint_steps}
         try:
             folder = self._driven.write(made.setup, made.parts.env, episode, result, **counts)
-        except (*USAGE_ERRORS, OSError) as error:
+        except (ObjectNavError, OSError) as error:
             return f"It could not be recorded: {error}"
         return f"Recorded in {folder}."
 

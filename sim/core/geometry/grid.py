@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float64, Int64
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sim.core.errors import ConfigError
 from sim.core.geometry.segment_kernels import mask_near_segment
@@ -180,3 +180,9 @@ def cells_near_segment(
     corner_m = frame.origin_xy_m[0] + cols.start * cell_m, frame.origin_xy_m[1] + rows.start * cell_m
     size = rows.stop - rows.start, cols.stop - cols.start
     return (rows, cols), mask_near_segment(*size, *corner_m, cell_m, x0, y0, x1, y1, radius_m)
+
+
+def runs_of(cells: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Returns first and last + 1 of each run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], cells, [False]])))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))

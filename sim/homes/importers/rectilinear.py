@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.geometry.grid import runs_of
 from sim.homes.housegen.floor_plan.rectangles import SIDES, Interval, Rect
 
 Point = tuple[float, float]
@@ -102,18 +103,12 @@ def _slabs(inside: NDArray[np.bool_], us: Sequence[float], vs: Sequence[float]) 
     done: list[tuple[float, ...]] = []
     growing: dict[tuple[float, float], float] = {}  # interval along v: where it began along u
     for i in range(len(inside) + 1):
-        runs = _runs(inside[i], vs) if i < len(inside) else []
+        runs = [(vs[first], vs[end]) for first, end in runs_of(inside[i])] if i < len(inside) else []
         for run in [run for run in growing if run not in runs]:
             done.append((growing.pop(run), us[i], *run))
         for run in runs:
             growing.setdefault(run, us[i])
     return done
-
-
-def _runs(column: NDArray[np.bool_], vs: Sequence[float]) -> list[tuple[float, float]]:
-    """Returns the intervals of the successive cells that are True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], column, [False]])))
-    return [(vs[a], vs[b]) for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)]
 
 
 def rectangles_of_triangles(triangles_m: NDArray[np.float64]) -> list[Rect]:

@@ -73,7 +73,7 @@ def fit(houses: Sequence[Surroundings], radius_m: float, *, steps: int = 400) ->
         steps: number of steps of Adam.
 
     Raises:
-        ConfigError: there are fewer than 100 objects.
+        ConfigError: there are fewer than 100 objects, or too few of each category.
     """
     count = sum(len(category) for _, category in houses)
     if count < 100:
@@ -81,6 +81,8 @@ def fit(houses: Sequence[Surroundings], radius_m: float, *, steps: int = 400) ->
     nearby, category = (np.concatenate(parts) for parts in zip(*houses, strict=True))
     counts = np.bincount(category, minlength=len(OBJECTS)) + 0.5
     known = counts >= MIN_OBJECTS
+    if not known.any():
+        raise ConfigError(f"No category of objects is {MIN_OBJECTS} times in the plans: give more plans.")
     nearby, category = nearby[known[category]], category[known[category]]
     frequency = known * counts / max((known * counts).sum(), 1.0)
     prior = torch.from_numpy(np.log(frequency, where=known, out=np.full(len(OBJECTS), -np.inf)).astype(np.float32))

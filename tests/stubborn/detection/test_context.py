@@ -30,6 +30,12 @@ def near(*names: str) -> np.ndarray:
     return np.array([[name in names for name in OBJECTS]], np.float32)
 
 
+def test_a_fit_needs_a_category_with_enough_objects():
+    every = np.arange(120) % len(OBJECTS)
+    with pytest.raises(ConfigError, match="No category of objects is 10 times in the plans"):
+        fit([(np.zeros((120, len(OBJECTS)), np.float32), every)], 2.5)
+
+
 def test_the_shipped_model_knows_homes():
     shipped = read_context()
     alone, by_sink = shipped.log_ratios(near()), shipped.log_ratios(near("sink", "toilet"))

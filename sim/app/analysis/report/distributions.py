@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bisect
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,7 +17,7 @@ CONFIDENCE_BINS = 10
 
 @dataclass(frozen=True)
 class Bins:
-    """Half-open intervals of a number: edge i <= number < edge i + 1; the last one has no end."""
+    """Half-open intervals of a number: edge i <= number < edge i + 1, from 0 on; the last one has no end."""
 
     edges: tuple[float, ...]
     unit: str
@@ -26,12 +27,9 @@ class Bins:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the bins in order, `unknown` last."""
-        first, *inner, last = self.edges
-        middle = (f"{low:g} to {high:g} {self.unit}" for low, high in zip((first, *inner), (*inner, last), strict=True))
-        below, *others = middle
-        if first == 0.0:
-            below = f"under {self.edges[1]:g} {self.unit}"
-        return below, *others, f"{last:g} {self.unit} and more", self.unknown
+        _, second, *_, last = self.edges
+        middle = (f"{low:g} to {high:g} {self.unit}" for low, high in itertools.pairwise(self.edges[1:]))
+        return f"under {second:g} {self.unit}", *middle, f"{last:g} {self.unit} and more", self.unknown
 
     def name(self, value: float | None) -> str:
         """Returns the name of the bin of a number, which is at least the first edge."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NotRequired, TypedDict
@@ -14,6 +14,7 @@ from sim.app.analysis.comparison import Run
 from sim.app.analysis.report.plans import PX_M, Plan, Sheet, draw_area, draw_plan, sheet_around
 from sim.core.configuration import with_fields
 from sim.core.errors import EpisodeError, HouseError
+from sim.core.geometry.grid import runs_of
 from sim.core.interface import CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.episodes.splits import Split, load_split, one_house
 from sim.houses.house import House, read_rooms
@@ -212,7 +213,7 @@ def path_on(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> DrawnPa
         "actions": "".join(map(str, trajectory.actions.tolist())),
         "hits": np.unique(hits, axis=0).tolist(),
         "stopped": np.flatnonzero(trajectory.collided).tolist(),
-        "seen": list(_spans(trajectory.goal_share >= EXPLORED_SHARE)),
+        "seen": [[first, end - 1] for first, end in runs_of(trajectory.goal_share >= EXPLORED_SHARE)],
         "robot": round(radius_m * PX_M),
     }
 
@@ -224,10 +225,3 @@ def _marks(run: Run, episode_id: str, trajectory: Trajectory) -> list[list[str |
 
 def _differences(values: NDArray[np.integer]) -> list[int]:
     return np.diff(values, prepend=0).tolist()
-
-
-def _spans(mask: NDArray[np.bool_]) -> Iterator[list[int]]:
-    """Yields [first, last] of each span of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    for first, end in edges.reshape(-1, 2).tolist():
-        yield [first, end - 1]

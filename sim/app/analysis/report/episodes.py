@@ -137,4 +137,4 @@ def outcome_choices(rows: Sequence[Row]) -> list[tuple[str, str, int]]:
 
 def by_number(name: str) -> list[tuple[int, str]]:
     """Returns a sort key that puts `val_9` before `val_10`."""
-    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"(\d+)", name)]

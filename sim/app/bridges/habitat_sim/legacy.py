@@ -230,7 +230,8 @@ def _open(config: Any) -> Any:
     OmegaConf.set_struct(config, False)
     sensors = config.habitat.simulator.agents.main_agent.sim_sensors
     if "semantic_sensor" not in sensors:
-        sensors.semantic_sensor = {**vars(HabitatSimSemanticSensorConfig()), "type": "", "hfov": 79}
+        camera = {name: sensors.depth_sensor[name] for name in ("position", "orientation", "hfov", "width", "height")}
+        sensors.semantic_sensor = {**vars(HabitatSimSemanticSensorConfig()), "type": "", **camera}
     return config
 
 
@@ -277,8 +278,7 @@ def _carried_over(config: Any) -> Any:
             if path == SENSORS:
                 _use_sensors(config, value)
                 continue
-            place = max((p for p in PLACES if path.startswith(f"{p}.")), key=len, default=None)
-            today = "habitat.seed" if path == "SEED" else place and f"{PLACES[place]}{path[len(place) :].lower()}"
+            today = _today(path)
             if today is None or OmegaConf.select(config, today) is None:
                 _tell(f"The configuration's {path}={value!r} has no effect here.")
             else:
@@ -287,6 +287,14 @@ def _carried_over(config: Any) -> Any:
         if "semantic_sensor" in main and not main.semantic_sensor.get("type"):
             del main["semantic_sensor"]
     return OmegaConf.create({"habitat": config.habitat})
+
+
+def _today(path: str) -> str | None:
+    """Returns the path of today for one of the tree of 2021; None: it has none."""
+    if path == "SEED":
+        return "habitat.seed"
+    place = max((p for p in PLACES if path.startswith(f"{p}.")), key=len, default=None)
+    return place and f"{PLACES[place]}{path[len(place) :].lower()}"
 
 
 def _leaves(tree: Any, *, skip: Sequence[str] = (), path: str = "") -> Iterator[tuple[str, Any]]:
@@ -303,17 +311,16 @@ def _leaves(tree: Any, *, skip: Sequence[str] = (), path: str = "") -> Iterator[
 def _merge(config: Any, changes: Any) -> None:
     """Merges a file into a configuration: the tree of today as it is, that of 2021 translated."""
     for path, value in _leaves(changes, skip=("defaults",)):
-        place = max((p for p in PLACES if path.startswith(f"{p}.")), key=len, default=None)
-        today = path if place is None else f"{PLACES[place]}{path[len(place) :].lower()}"
-        known = OmegaConf.select(config, today)
-        if place is not None and (known is None or isinstance(known, DictConfig)):  # such as a list of measures
+        today = _today(path)
+        known = OmegaConf.select(config, today or path)
+        if today is not None and (known is None or isinstance(known, DictConfig)):  # such as a list of measures
             OmegaConf.update(config, path, value, force_add=True)  # the script may read it
             if path == SENSORS:
                 _use_sensors(config, value)
             else:
                 _tell(f"The configuration's {path}={value!r} has no effect here.")
         else:
-            OmegaConf.update(config, today, value, force_add=True)
+            OmegaConf.update(config, today or path, value, force_add=True)
 
 
 def _pairs(overrides: Sequence[Any] | None) -> list[Any]:

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from sim.app.bridges.habitat_sim.maths import Vector3
 from sim.app.bridges.habitat_sim.settings import NavMeshSettings
 from sim.core.errors import ConfigError
+from sim.core.geometry.grid import GridFrame
 from sim.core.interface import Action
 from sim.env.oracle import Destination, Follower
 from sim.episodes.habitat import from_position, to_position
@@ -129,16 +130,27 @@ class Storey:
         That is the point itself if it lies on one.
         """
         frame, cells = self.space.frame, self.parts == part if part else self.space.free
-        row, col = frame.cell(x_m, y_m)
-        if 0 <= row < cells.shape[0] and 0 <= col < cells.shape[1] and cells[row, col]:
+        if self.holds(x_m, y_m) and cells[frame.cell(x_m, y_m)]:
             return x_m, y_m
-        window = frame.index_of((x_m, y_m, x_m, y_m), within_m)
-        x, y = frame.axes(window)
-        away_m = np.where(cells[window], np.hypot(x[None, :] - x_m, y[:, None] - y_m), math.inf)
-        if away_m.min(initial=math.inf) > within_m:
-            return None
-        row, col = np.unravel_index(int(away_m.argmin()), away_m.shape)
-        return float(x[col]), float(y[row])
+        return _nearest_cell(frame, cells, x_m, y_m, within_m)
+
+    def holds(self, x_m: float, y_m: float) -> bool:
+        """Returns whether a point lies on the grid of the storey; NaN does not."""
+        row, col = self.space.frame.cell(x_m, y_m) if math.isfinite(x_m) and math.isfinite(y_m) else (-1, -1)
+        return 0 <= row < self.space.free.shape[0] and 0 <= col < self.space.free.shape[1]
+
+
+def _nearest_cell(
+    frame: GridFrame, cells: NDArray[np.bool_], x_m: float, y_m: float, within_m: float
+) -> tuple[float, float] | None:
+    """Returns the middle of the nearest cell that is True; None: there is none within a distance."""
+    window = frame.index_of((x_m, y_m, x_m, y_m), within_m)
+    x, y = frame.axes(window)
+    away_m = np.where(cells[window], np.hypot(x[None, :] - x_m, y[:, None] - y_m), math.inf)
+    if away_m.min(initial=math.inf) > within_m:
+        return None
+    row, col = np.unravel_index(int(away_m.argmin()), away_m.shape)
+    return float(x[col]), float(y[row])
 
 
 class PathFinder:
@@ -286,6 +298,8 @@ class PathFinder:
         if storey is None:
             return Vector3(start)
         to_x_m, to_y_m, _ = from_position(_three(end))
+        if not np.isfinite((x_m, y_m, to_x_m, to_y_m)).all():
+            return Vector3(start)
         x_m, y_m = storey.glide.try_step((x_m, y_m), (to_x_m, to_y_m), sliding=sliding)
         return Vector3(to_position(x_m, y_m, z_m))
 
@@ -318,22 +332,17 @@ class PathFinder:
         return self.closest_obstacle_surface_point(pt, max_search_radius).hit_dist
 
     def closest_obstacle_surface_point(self, pt: ArrayLike, max_search_radius: float = 2.0) -> HitRecord:
-        """Returns the nearest place where the middle of the robot cannot be."""
+        """Returns the nearest place where the middle of the robot cannot be; it is inf away from outside the house."""
         x_m, y_m, z_m = from_position(_three(pt))
         storey = self._storey_at(z_m, SNAP_M)
-        if storey is None:
+        if storey is None or not storey.holds(x_m, y_m):
             return HitRecord(Vector3(pt), Vector3(), math.inf)
-        space = storey.space
-        window = space.frame.index_of((x_m, y_m, x_m, y_m), max_search_radius)
-        x, y = space.frame.axes(window)
-        away_m = np.where(space.free[window], math.inf, np.hypot(x[None, :] - x_m, y[:, None] - y_m))
-        if not np.isfinite(away_m).any():
+        found = _nearest_cell(storey.space.frame, ~storey.space.free, x_m, y_m, max_search_radius)
+        if found is None:
             return HitRecord(Vector3(pt), Vector3(), max_search_radius)
-        row, col = np.unravel_index(int(away_m.argmin()), away_m.shape)
-        hit = Vector3(to_position(float(x[col]), float(y[row]), z_m))
-        dist = min(float(away_m.min()), max_search_radius)
+        hit = Vector3(to_position(*found, z_m))
         away = Vector3(Vector3(pt) - hit)
-        return HitRecord(hit, Vector3(away / max(away.length(), 1e-9)), dist)
+        return HitRecord(hit, Vector3(away / max(away.length(), 1e-9)), math.dist(found, (x_m, y_m)))
 
     @property
     def num_islands(self) -> int:

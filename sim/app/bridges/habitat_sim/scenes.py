@@ -28,7 +28,7 @@ def find_house(scene_id: str) -> House:
     split = _split_of(path)
     if split is not None and path.stem in split.houses and (not path.is_file() or split.house_list is not None):
         return split.load_house(path.stem)
-    for file in (path, path.with_suffix(".xml")):
+    for file in (path, path.with_suffix(".xml")) if path.name else ():
         if file.suffix in HOUSE_SUFFIXES and file.is_file():
             return load_house(file)
     raise HouseError(

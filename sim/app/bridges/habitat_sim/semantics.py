@@ -16,7 +16,7 @@ from sim.core.interface import MPCAT40_ID
 from sim.core.reading import FARTHEST_M
 from sim.houses.geoms import geom_polytope
 from sim.houses.house import Room
-from sim.houses.labels import VOID
+from sim.houses.labels import VOID, Instance
 from sim.world.standing import Standing, is_in, read_standing
 from sim.world.world import World
 
@@ -106,7 +106,7 @@ class Category:
         return self.label
 
     def index(self, mapping: str = "") -> int:
-        """Returns the number in mpcat40."""
+        """Returns the number: of an object that in mpcat40, of a room its place among the rooms."""
         return self.number
 
 
@@ -172,14 +172,13 @@ class SemanticScene:
 def semantic_scene(world: World) -> SemanticScene:
     """Returns the semantic scene of the present state of a world."""
     standing = read_standing(world.model, world.data, world.labels)
-    boxes = {item.label: _box(*_extents(world, item)) for item in standing}
+    boxes = [_box(*_extents(world, *pair)) for pair in zip(standing, world.labels.instances, strict=True)]
     nothing = AxisAlignedBox(np.zeros(3), np.zeros(3))
     objects = [SemanticObject(f"{VOID}_0", 0, Category(VOID, 0), nothing)]
-    for index, instance in enumerate(world.labels.instances, start=1):
+    for index, (instance, box) in enumerate(zip(world.labels.instances, boxes, strict=True), start=1):
         category = Category(instance.category, MPCAT40_ID[instance.category])
-        box, name = boxes[instance.name], instance.name
-        objects.append(SemanticObject(f"{instance.category}_{index}", index, category, box, name))
-    whole = _around(list(boxes.values())) if boxes else nothing
+        objects.append(SemanticObject(f"{instance.category}_{index}", index, category, box, instance.name))
+    whole = _around(boxes) if boxes else nothing
     levels: dict[float, SemanticLevel] = {}
     regions = []
     for number, room in enumerate(world.rooms):
@@ -207,11 +206,10 @@ def _around(boxes: list[AxisAlignedBox]) -> AxisAlignedBox:
     return AxisAlignedBox(np.min([box.low for box in boxes], axis=0), np.max([box.high for box in boxes], axis=0))
 
 
-def _extents(world: World, item: Standing) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _extents(world: World, item: Standing, instance: Instance) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Returns the lowest and the highest corner of an instance; of a plane, of the rectangle that is rendered."""
     if (item.high - item.low).max() <= FARTHEST_M:
         return item.low, item.high
-    (instance,) = (each for each in world.labels.instances if each.name == item.label)
     shapes = [geom_polytope(world.model, world.data, geom, rendered=True) for geom in instance.geom_ids]
     corners = np.concatenate([shape.vertices_m for shape in shapes])
     return corners.min(axis=0), corners.max(axis=0)

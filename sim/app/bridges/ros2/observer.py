@@ -286,7 +286,7 @@ class Wheels:
     def hold(self, speed_m_s: float, rate_rad_s: float) -> Held:
         """Publishes a velocity and returns the state at the next message of `/odom`."""
         self._node.catch_up()
-        before_ns = self._stamp()
+        before_ns = self.stamp_ns
         self._node.send(speed_m_s, rate_rad_s)
         self._next(before_ns)
         _, pose, speed, rate = self._odometry()
@@ -305,7 +305,7 @@ class Wheels:
     @property
     def stamp_ns(self) -> int:
         """Stamp of the last message of `/odom`."""
-        return self._stamp()
+        return self._odometry()[0]
 
     @property
     def _over(self) -> bool:
@@ -317,18 +317,15 @@ class Wheels:
             self._node.spin(0.1)
         return self._node.odometry
 
-    def _stamp(self) -> int:
-        return self._odometry()[0]
-
     def _next(self, before_ns: int) -> None:
-        while self._stamp() <= before_ns and not self._over:
+        while self.stamp_ns <= before_ns and not self._over:
             self._node.spin(0.1)
 
     def _period_s(self) -> float:
         self._node.catch_up()
-        first = self._stamp()
+        first = self.stamp_ns
         self._next(first)
-        second = self._stamp()
+        second = self.stamp_ns
         return max(0.02, (second - first) * 1e-9)
 
 

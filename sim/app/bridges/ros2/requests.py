@@ -57,7 +57,7 @@ class Requests:
             self._flags.clear()
 
     def end(self) -> None:
-        """Refuses further requests until the next episode begins."""
+        """Refuses further flags until the next episode begins."""
         with self._changed:
             self._running = False
 
@@ -92,7 +92,7 @@ class Requests:
             self._actions.clear()
 
     def action(self, within_s: float) -> Action | None:
-        """Returns the next action; None if no action arrived within the time, or a flag other than `step` is up."""
+        """Returns the next action; without one, None after the time or as soon as a flag other than `step` is up."""
         with self._changed:
             self._changed.wait_for(lambda: bool(self._actions or self._flags - {"step"}), within_s)
             if "stop" in self._flags:

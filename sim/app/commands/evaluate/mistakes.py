@@ -177,7 +177,7 @@ def draw(images: dict[str, NDArray], segmenter: NetworkSegmenter | OwnSegmenter,
     faint = cv2.resize(255.0 * (1.0 - score), size)
     heat = np.dstack([np.full_like(faint, 255.0), faint, faint]).astype(np.uint8)
     rgb = np.asarray(cv2.resize(images["rgb"], size, interpolation=cv2.INTER_AREA), np.uint8)
-    text = in_words(images["semantic"], score) if scored else "a goal in words has no score"
+    text = in_words(images["semantic"], score) if scored else "this goal has no score"
     return np.hstack([rgb, *labels, heat], dtype=np.uint8), text
 
 

@@ -73,11 +73,10 @@ def draw_common_length_m(rng: np.random.Generator, upper: Row, lower: Row, corri
     Raises:
         PlanError: no length fits both rows.
     """
-    if any(
-        (row.widths_m(corridor_m)[:, 0] > row.widths_m(corridor_m)[:, 2]).any() for row in (upper, lower) if row.columns
-    ):
+    of_rows = [row.widths_m(corridor_m) for row in (upper, lower) if row.columns]
+    if any((widths_m[:, 0] > widths_m[:, 2]).any() for widths_m in of_rows):
         raise PlanError("a room does not suit the depth of its row")
-    ranges = [row.widths_m(corridor_m).sum(axis=0) for row in (upper, lower) if row.columns]
+    ranges = [widths_m.sum(axis=0) for widths_m in of_rows]
     low, high = max(r[0] for r in ranges), min(r[2] for r in ranges)
     if low > high:
         raise PlanError(f"rows of {ranges[0][1]:.1f} m and {ranges[-1][1]:.1f} m do not fit one corridor")

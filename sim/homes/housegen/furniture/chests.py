@@ -59,7 +59,7 @@ def dresser(w: Workbench) -> None:
 
 
 def tallboy(w: Workbench) -> None:
-    """Builds a tall narrow chest with five drawers."""
+    """Builds a tall narrow chest with four to six drawers."""
     width, depth, height = w.width(0.45, 0.65), w.depth(0.40, 0.46), w.length(1.05, 1.30)
     _drawer_column(w, (depth, width, height), 0.05, 0.06, (4, 6), "metal", ("bar", "knob"))
 

@@ -1,6 +1,6 @@
 """The catalogue of procedural textures; each one is drawn by a function of `texture_patterns` with its own seed.
 
-Most are grey, so that a `Look` tints them; brick, terrazzo and rugs have their own colours.
+Most are grey, so that a `Look` tints them; some, such as brick, terrazzo, rugs and views, have their own colours.
 `tools.maintenance.make_textures` writes them as PNG files; houses refer to the files by name. Every texture
 belongs to one pool: train houses never show a held-out one.
 """
@@ -10,7 +10,6 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -93,7 +92,7 @@ _UPRIGHT = ("brick", "rubble", "tiles", "paper", "motif", "outside", "reflection
 
 def _entry(name: str, pool: Pool, tile_m: float, draw: Callable[..., Image], seed: int, **options: object) -> Texture:
     """Returns a texture drawn with these options."""
-    return Texture(name, pool, tile_m, partial(draw, **options), seed, draw.__name__ in _UPRIGHT)
+    return Texture(name, pool, tile_m, functools.partial(draw, **options), seed, draw.__name__ in _UPRIGHT)
 
 
 # fmt: off

@@ -20,6 +20,7 @@ from sim.app.analysis.report.distributions import (
     first_sight_histogram,
     spl_histogram,
 )
+from sim.app.analysis.report.episodes import by_number
 from sim.app.analysis.report.figures import grouped, proportion_of
 from sim.app.analysis.report.trend import BOTTOM, HEIGHT, METRICS, TOP, trend
 from sim.task.result import EpisodeResult
@@ -40,6 +41,10 @@ def test_a_number_is_in_the_bin_that_begins_at_or_below_it_and_ends_above_it(bin
     assert bins.name(1e9) == bins.names[-2]
     assert bins.name(None) == bins.unknown == bins.names[-1]
     assert len(FIRST_SIGHT_LABELS) == len(FIRST_SIGHTS) + 1
+
+
+def test_numbers_in_names_are_sorted_by_value_and_a_superscript_is_no_number() -> None:
+    assert sorted(["val_10", "flat_2²", "val_9"], key=by_number) == ["flat_2²", "val_9", "val_10"]
 
 
 def test_groups_hold_each_episode_once_and_differences_are_from_the_first_run() -> None:

@@ -13,6 +13,7 @@ from sim.app.bridges.habitat_sim.agent import AgentState
 from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Rad, Vector3, quat_from_coeffs, quat_rotate_vector
 from sim.app.bridges.habitat_sim.options import configure
 from sim.app.bridges.habitat_sim.pathfinder import MARGIN_M, GreedyFollowerError, MultiGoalShortestPath, ShortestPath
+from sim.app.bridges.habitat_sim.scenes import find_house
 from sim.app.bridges.habitat_sim.semantics import semantic_scene
 from sim.app.bridges.habitat_sim.settings import (
     ActionSpec,
@@ -266,6 +267,26 @@ def test_the_pathfinder_knows_where_the_robot_fits(empty: Simulator) -> None:
     assert all(finder.is_navigable(finder.get_random_navigable_point()) for _ in range(5))
     near = finder.get_random_navigable_point_near([1.0, 0.0, 1.0], 0.3)
     assert math.dist(near, (1.0, 0.0, 1.0)) <= 0.3
+
+
+def test_obstacles_are_looked_for_within_a_circle_and_inside_the_house(tmp_path: Path) -> None:
+    house = with_box(room(6, 4), "cabinet_00", centre_m=(0.0, 0.0, 0.5), half_m=(0.2, 0.2, 0.5))
+    with simulator(tmp_path, house) as sim:
+        finder = sim.pathfinder
+        beyond_corner = 0.2 + (sim.world.robot.radius_m + 0.35) / math.sqrt(2.0)
+        point = [beyond_corner, 0.0, -beyond_corner]
+        assert finder.distance_to_closest_obstacle(point) == pytest.approx(0.35, abs=0.04)
+        assert finder.distance_to_closest_obstacle(point, 0.3) == 0.3
+        assert math.isinf(finder.distance_to_closest_obstacle([100.0, 0.0, 100.0]))
+        assert math.isinf(finder.distance_to_closest_obstacle([math.nan, 0.0, 0.0]))
+        for start, end in (([math.nan, 0.0, 0.0], point), (point, [math.nan, 0.0, 0.0])):
+            np.testing.assert_allclose(finder.try_step(start, end), start, rtol=1e-6)
+
+
+@pytest.mark.parametrize("scene", ["", "/"])
+def test_a_scene_without_a_name_is_no_house(scene: str) -> None:
+    with pytest.raises(HouseError, match="There is no house"):
+        find_house(scene)
 
 
 def test_points_on_an_island_are_on_that_island(tmp_path: Path) -> None:
