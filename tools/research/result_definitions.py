@@ -71,7 +71,7 @@ class PageTable:
 _PAGES = {"worlds": "worlds.md", "traps": "traps.md", "words": "words.md", "chain-agents": "words.md"}
 EPISODES = {
     "headline": {"val": 200, "test": 500, SEALED: 200},
-    "further": {"large": 200, "hazards": 200, "transfer": 200, "contact-heldout": 60},
+    "further": {"large": 200, "hazards": 200, "transfer": 200, "contact-heldout": 60, "contact-val": 150},
     "ablation": {"val": 100, "hazards": 100},
     "explorers": {"val": 100},
     "explorers-large": {"large": 200},
