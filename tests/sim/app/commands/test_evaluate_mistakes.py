@@ -153,7 +153,7 @@ def test_another_motion_changes_no_picture_and_a_goal_in_words_has_no_score(reco
         "semantic": np.ones((480, 640), np.uint8),
     }
     panels, text = show_mistakes.draw(images, segmenter, "nightstand")
-    assert text == "a goal in words has no score"
+    assert text == "this goal has no score"
     assert (panels[:, -show_mistakes.PANEL_PX :] == 255).all()
 
 
