@@ -94,7 +94,7 @@ AGENTS: Mapping[str, Mapping[str, Sequence[str]]] = {
     "words": dict.fromkeys(
         EPISODES["words"], ("oracle gt", "frontier gt", "stubborn gt", "stubborn-plus gt", "stubborn-plus rednet")
     ),
-    "chain-agents": {"chains-val": ("oracle gt", "stubborn gt", "stubborn-plus gt")},
+    "chain-agents": {"chains-val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn-plus rednet")},
 }
 """Agents and segmentation by split; `further` has harder splits, `worlds` the houses of other projects."""
 CHAINS = (
