@@ -111,7 +111,10 @@ def category_id(name: str) -> int:
         ConfigError: mpcat40 has no such category, or it is void.
     """
     if name not in MPCAT40[1:]:
-        raise ConfigError(f"mpcat40 has no category {name!r}. Available: {', '.join(MPCAT40[1:])}.")
+        raise ConfigError(
+            f"mpcat40 has no category {name!r}. Available: {', '.join(MPCAT40[1:])}. "
+            "For goals in words, see docs/words.md#agents."
+        )
     return MPCAT40_ID[name]
 
 

@@ -74,9 +74,12 @@ def _one_of(words: Iterable[str]) -> str:
     return f"({'|'.join(sorted(words, key=len, reverse=True))})"
 
 
-_BEFORE_PLACE = re.compile(f" (?:that is |which is |standing |lying |hanging )?{_one_of(_PLACES)} ")
-_IN_ROOM = re.compile(f" (?:in|of|inside|from) (?:the |a |an |my |our )?{_one_of(ROOMS)}$")
+_PLACED = f" (?:that is |which is |standing |lying |hanging )?{_one_of(_PLACES)} "
+_BEFORE_PLACE = re.compile(_PLACED)
+_IN_ROOM = re.compile(f" (?:in|of|inside|from) (?:the |a |an |my |our )?{_one_of(ROOMS)}(?=$|{_PLACED}| in )")
+"""A room at the end of a wish, or before a place: "the chair in the bedroom next to the window"."""
 _IN_UNKNOWN = re.compile(r"^(.+?) (?:in|inside) (?:the |a |an |my |our )?(.+)$")
+_POLITE_END = re.compile(r" please$")
 _OF_N = re.compile(rf"^(\w+) (?:one )?of (?:the |all )?(?:({'|'.join(_NUMBERS)}|\d) )?(.+)$")
 
 
@@ -137,14 +140,18 @@ def parse_wish(text: str) -> Wish:
     """
     if not text.strip() or len(text) > MAX_TEXT:
         raise WishError(f"A goal in words has 1 to {MAX_TEXT} characters, got {len(text)}.")
-    rest = normal_form(_BEGINNINGS.sub("", normal_form(text)))
-    room, in_room = "", _IN_ROOM.search(" " + rest)
-    if in_room:
-        room, rest = in_room[1], (" " + rest)[: in_room.start()].strip()
+    rest = normal_form(_BEGINNINGS.sub("", _POLITE_END.sub("", normal_form(text))))
+    in_rooms = [match[1] for match in _IN_ROOM.finditer(f" {rest}")]
+    if len(in_rooms) > 1:
+        raise WishError(f"A goal may name one room, got '{in_rooms[0]}' and '{in_rooms[1]}'.")
+    room = "".join(in_rooms)
+    rest = _IN_ROOM.sub("", f" {rest}").strip()
     is_word = rest in vocabulary().words  # "something to sit on" is one
     head, *others = [_first(rest)] if is_word else _split_places(rest)
     beside = tuple(Beside(place, *_other(words)) for place, words in others)
     wish = _noun_phrase(rest, head[1], beside)
+    if room and wish.rooms not in ((), ROOMS[room]):
+        raise WishError(f"A goal may name one room, got two in '{rest} in the {room}'.")
     return replace(wish, text=f"{wish.text} in the {room}", rooms=ROOMS[room]) if room else wish
 
 
@@ -209,6 +216,8 @@ def _noun_phrase(text: str, phrase: str, beside: tuple[Beside, ...]) -> Wish:
 def _unknown(word: str, before: str = "") -> WishError:
     objects = [known for known, (relation, _) in vocabulary().words.items() if relation != "other"]
     conditions = [*_COLOURS, *MATERIALS, *_SIZES, *_SHAPES, *ROOMS]
+    if before and word in conditions:
+        raise WishError(f"A goal has one colour, material, size and room; '{word}' before '{before}' is a second one.")
     if before:
         hint = did_you_mean(f"{word} {before}", objects, 0.9) or did_you_mean(word, conditions, 0.7)
         return WishError(

@@ -74,6 +74,12 @@ def test_a_room_may_stand_before_the_name_unless_both_are_a_word():
     assert (parse_wish("kitchen chair").rooms, names("kitchen chair")) == ((), {"dining chair"})
 
 
+def test_a_room_may_stand_before_a_place():
+    wish = parse_wish("the red chair in the living room next to the window, please")
+    assert wish == parse_wish("the red chair next to the window in the living room")
+    assert (wish.rooms, wish.beside[0].words) == (("living_room", "studio"), "window")
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -87,6 +93,9 @@ def test_a_room_may_stand_before_the_name_unless_both_are_a_word():
         ("chair next to", "chair next to"), ("", "1 to 300 characters"), ("x" * 301, "got 301"),
         ("chair next to the red table", "'the red table'"), ("chair next to the", "object on each side of 'next to'"),
         ("find", "must name an object"), ("the", "must name an object"), ("!?", "must name an object"),
+        ("chair in the bedroom in the kitchen", "one room, got 'bedroom' and 'kitchen'"),
+        ("bathroom mirror in the hall", "one room, got two in 'bathroom mirror in the hall'"),
+        ("the red blue chair", "'blue' before 'chair' is a second one"),
         ("find it in the bedroom", "'it'"), ("in the bedroom", "must name an object"),
     ],
 )  # fmt: skip
