@@ -91,10 +91,8 @@ AGENTS: Mapping[str, Mapping[str, Sequence[str]]] = {
     "headline": {"val": _ORACLE_AND_BOTH, "test": _ORACLE_AND_BOTH, SEALED: _ORACLE_AND_BOTH},
     "further": dict.fromkeys(EPISODES["further"], _ORACLE_AND_BOTH),
     "worlds": dict.fromkeys(("val", "rooms", "house", "kitchen"), _ORACLE_AND_BOTH),
-    "words": dict.fromkeys(
-        EPISODES["words"], ("oracle gt", "frontier gt", "stubborn gt", "stubborn-plus gt", "stubborn-plus rednet")
-    ),
-    "chain-agents": {"chains-val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn-plus rednet")},
+    "words": dict.fromkeys(EPISODES["words"], ("oracle gt", "frontier gt", *_ORACLE_AND_BOTH[1:])),
+    "chain-agents": {"chains-val": _ORACLE_AND_BOTH},
 }
 """Agents and segmentation by split; `further` has harder splits, `worlds` the houses of other projects."""
 CHAINS = (
