@@ -57,7 +57,7 @@ class RunOptions:
     robot: Annotated[str | None, Option(of_world=True, file_field="robot.file.path")] = None
     """Replaces the default robot: an MJCF file with its sidecar next to it, or menagerie:NAME (docs/worlds.md)."""
     goal: Annotated[str | None, Option(of_world=True, of_episodes=True, plain=True)] = None
-    """Only this goal category."""
+    """Only this goal category; with --house also words, such as "the red chair in the bedroom"."""
     start_deg: Annotated[str | None, Option(of_world=True, of_episodes=True, plain=True)] = None
     """With --house: the start pose "X Y YAW" in metres and degrees."""
     episodes: Annotated[cli.Count, _MORE_EPISODES] = 5

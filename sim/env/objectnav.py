@@ -179,7 +179,9 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self.action_space = spaces.Discrete(len(self.actions))
         self._episodes = [episode for episode in self.split.episodes if goal in (None, episode.goal)]
         if self.split.episodes and not self._episodes:
-            raise ConfigError(f"Split '{self.split.name}' has no episode with goal '{goal}'.")
+            raise ConfigError(
+                f"Split '{self.split.name}' has no episode with goal '{goal}'. Other words need a house (house=)."
+            )
         self._scenes = SceneCache(self._make_scene, size=cached_houses)
         self._shared: SharedContext | None = None
         self._scene: Scene | None = None
@@ -335,6 +337,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         if "episode" in options:
             return options["episode"]
         if "episode_id" in options:
+            if self._episode is not None and options["episode_id"] == self._episode.episode_id:
+                return self._episode  # one that was drawn is in no split
             return self.split.episode(options["episode_id"])
         if self._episodes:
             return self._episodes[self.np_random.integers(len(self._episodes))]

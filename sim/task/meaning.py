@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 
 from sim.core.errors import EpisodeError, HouseError
-from sim.core.vocabulary import NO_OBJECTS, in_words
+from sim.core.vocabulary import NO_OBJECTS, in_words, vocabulary
 from sim.core.wishes import Beside, Wish
 from sim.gl import mujoco
 from sim.houses.house import Room
@@ -228,7 +228,7 @@ class Meaning:
     def _nothing_for(self, wish: Wish) -> str:
         same = self.named(wish.names)
         if not same:
-            listed = self.names()
+            listed = self.names().keys() & vocabulary().categories.keys()  # a house may have names that are no words
             names = ", ".join(sorted(listed)[:MAX_LISTED]) + (", ..." if len(listed) > MAX_LISTED else "")
             return f"{self._house} has no '{wish.noun}'. It has: {names}."
         return f"{self._house} has no '{wish.text}'. It has: {_described(same)}."

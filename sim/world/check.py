@@ -21,11 +21,12 @@ from sim.core.errors import HouseError
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES, SuccessRule
 from sim.core.wishes import ROOMS
+from sim.core.vocabulary import vocabulary
 from sim.gl import mujoco
 from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.hazards import Hazard, read_hazards
 from sim.houses.house import House, Room, read_rooms, sites_without_room
-from sim.houses.instance_facts import read_instance_facts
+from sim.houses.instance_facts import InstanceFacts, read_instance_facts
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
 from sim.world.advice import advice
 from sim.world.arrangement import arrangement_faults
@@ -104,10 +105,23 @@ def check_own_house(house: House) -> tuple[list[str], list[str]]:
     remarks += _doubtful_rooms(compiled.model, compiled.rooms)
     faults = _unreachable(compiled)
     try:
-        read_instance_facts(compiled.model, compiled.labels)
+        facts = read_instance_facts(compiled.model, compiled.labels)
     except HouseError as error:
         faults.append(str(error).rstrip("."))
+    else:
+        remarks += _doubtful_names(facts)
     return faults, remarks
+
+
+def _doubtful_names(facts: Mapping[str, InstanceFacts]) -> Iterator[str]:
+    """Yields a sentence for each everyday name that no goal in words can ask for."""
+    known = vocabulary()
+    for instance, fact in facts.items():
+        if fact.name and fact.name not in known.categories:
+            found = known.find(fact.name)
+            similar = sorted(found.names) if found else difflib.get_close_matches(fact.name, known.categories, n=1)
+            hint = f"; a known name is '{similar[0]}'" if similar else ""
+            yield f"the name '{fact.name}' of '{instance}' is no everyday name that goals in words know{hint}"
 
 
 def _doubtful_rooms(model: mujoco.MjModel, rooms: Sequence[Room]) -> Iterator[str]:

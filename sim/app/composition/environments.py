@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -78,9 +79,7 @@ def episodes_of(setup: Setup) -> RunEpisodes:
             fitting = tuple(episode for episode in split.episodes if takes(setup, episode))
             split_of_agent = replace(split, episodes=fitting)
             if not split_of_agent.episodes:
-                raise ConfigError(
-                    f"Split '{split.name}' has no episode with a goal that the agent knows: {', '.join(known)}."
-                )
+                raise _nothing_for(setup, f"Split '{split.name}'", split.episodes)
             choose = _named_episodes if options.only else _first_episodes
             episodes = choose(split_of_agent, options)
         else:
@@ -130,7 +129,7 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
         if takes(setup, episode) and key not in episodes:
             episodes[key], last = episode, i
     if not episodes:
-        raise ConfigError(f"House '{house}' has no episode with a goal that the agent knows: {', '.join(known)}.")
+        raise _nothing_for(setup, f"House '{house}'", (episode,))
     if len(episodes) < options.episodes:
         raise ConfigError(
             f"House '{house}' has {counted(len(episodes), 'different episode')} with "
@@ -138,6 +137,22 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
             f"--episodes {len(episodes)}, or --noise realsense."
         )
     return list(episodes.values())
+
+
+def _nothing_for(setup: Setup, place: str, episodes: Sequence[Episode]) -> ConfigError:
+    """Returns the error for episodes of which the agent takes none."""
+    kinds = {goal.kind for episode in episodes for goal in episode.specs}
+    agent = setup.options.agent
+    if kinds <= {"words", "description"} and not setup.spec.words:
+        return ConfigError(
+            f"Agent '{agent}' takes no goals in words; an agent declares them with AgentSpec.words (docs/words.md#agents)."
+        )
+    if kinds == {"picture"} and not setup.spec.pictures:
+        return ConfigError(
+            f"Agent '{agent}' takes no pictures as goals; an agent declares them with AgentSpec.pictures (docs/words.md)."
+        )
+    known = ", ".join(known_goals(setup))
+    return ConfigError(f"{place} has no episode with a goal that the agent '{agent}' knows: {known}.")
 
 
 def _named_episodes(split: Split, options: RunOptions) -> list[Episode]:

@@ -337,7 +337,9 @@ class RunDirectory(Generic[LineT]):
             return
         existing = read_record(file)
         self._require_same_physics(existing, config)
-        for path, before, now in run_differences(existing, config, resumed=True):
+        differences = run_differences(existing, config, resumed=True)
+        # The options first: they are what the user changed, and often the cause of other settings.
+        for path, before, now in sorted(differences, key=lambda difference: difference[0].startswith("config.")):
             if not all(value is None or value is ABSENT for value in (before, now)):
                 version = existing.get("versions", {}).get("stubborn-objectnav")
                 older = version != config.get("versions", {}).get("stubborn-objectnav") and version is not None

@@ -25,6 +25,7 @@ from typing import TypeVar
 from sim.core.errors import AgentError, ConfigError
 from sim.core.files import write_together
 from sim.core.reading import printable, read_bytes, reason_of
+from sim.core.vocabulary import counted
 
 _log = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -127,7 +128,7 @@ class Client:
                 except OSError as fault:  # the reply is valid, and may have been paid for
                     _log.warning("The reply is not kept in '%s': %s.", kept.parent, reason_of(fault))
             return value
-        raise AgentError(f"{url} gave no valid reply in {self._config.retries + 1} attempts: {problem}")
+        raise AgentError(f"{url} gave no valid reply in {counted(self._config.retries + 1, 'attempt')}: {problem}")
 
     def _kept(self, url: str, body: bytes) -> Path | None:
         """Returns the file of the reply to a request; None: replies are not kept."""
@@ -161,7 +162,7 @@ def post(url: str, body: bytes, headers: Mapping[str, str], timeout_s: float) ->
         text = "without a text"
         with error, contextlib.suppress(OSError, http.client.HTTPException):
             text = error.read(300).decode(errors="replace")
-        raise ConfigError(f"status {error.code}: {printable(' '.join(text.split()))[:200]}") from None
+        raise ConfigError(f"status {error.code}: {printable(' '.join(text.split()))[:200].rstrip('.')}.") from None
     except (OSError, http.client.HTTPException) as error:
         reason = getattr(error, "reason", error)
         text = f"no reply in {timeout_s:g} s" if isinstance(reason, TimeoutError) else str(reason)

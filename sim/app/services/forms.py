@@ -67,6 +67,8 @@ def read_posteriors(data: bytes, *, shape: tuple[int, int]) -> NDArray[np.float3
     Raises:
         ConfigError: they have another type, no whole fraction of the picture's size, or values outside of [0, 1].
     """
+    if not data.startswith(b"\x93NUMPY"):
+        raise ConfigError(f"its reply is not an NPY file: it {f'begins with {data[:40]!r}' if data else 'is empty'}.")
     stream = io.BytesIO(data)
     try:
         posteriors = np.load(stream, allow_pickle=False)

@@ -34,7 +34,10 @@ from sim.episodes.splits import HOUSE_SUFFIXES, Split, absolute_split, load_spli
 from sim.houses.labels import read_labels
 from sim.task.result import EpisodeResult
 
-NOT_OFFERED = ("test", "large-test", "hazards-test", "contact-test", "contact-heldout")
+NOT_OFFERED = (
+    "test", "large-test", "hazards-test", "contact-test", "contact-heldout", "words-seen-test", "words-synonyms-test",
+    "words-unseen-test",
+)  # fmt: skip
 """Splits that are kept for a last measurement; the page offers them only if `--split` names them."""
 FIRST = ("val", "large", "hazards", "traps", "contact-val")
 """The splits that the page lists first."""
@@ -238,7 +241,10 @@ class Choices:
             raise ConfigError(f"There is no '{goal}' in house '{house}' of '{asked.split}'.")
         parse_wish(goal)
         if self._agents[asked.agent].words is None:
-            raise ConfigError(f"The agent '{asked.agent}' takes the listed goals only, no wishes in words.")
+            raise ConfigError(
+                f"The agent '{asked.agent}' takes the listed goals only, no goals in words; an agent declares them "
+                "with AgentSpec.words (docs/words.md#agents)."
+            )
 
     @staticmethod
     def _require(option: str, name: str, offered: Mapping[str, object]) -> None:

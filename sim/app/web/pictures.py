@@ -87,14 +87,20 @@ class Pictures:
         return self._chase.render()
 
 
-def in_sight(semantic: NDArray[np.uint8], goal: str) -> list[dict[str, object]]:
-    """Returns name, colour (CSS) and whether it is the goal of each true category in the frame."""
-    shown = overlay.names_in_sight(semantic, goal)
+def in_sight(semantic: NDArray[np.uint8], goal: str, goal_mask: NDArray[np.bool_]) -> list[dict[str, object]]:
+    """Returns name and colour (CSS) of each true category in the frame, and whether the goal is in it.
+
+    Args:
+        semantic: (h, w) mpcat40 ids.
+        goal: the goal.
+        goal_mask: (h, w) its pixels; not every object of its categories is the goal if it is in words or a picture.
+    """
+    shown, of_goal = overlay.names_in_sight(semantic, goal), np.unique(semantic[goal_mask])
     return [
         {
             "name": in_words(MPCAT40[i]),
             "colour": css((int(PALETTE[i, 0]), int(PALETTE[i, 1]), int(PALETTE[i, 2]))),
-            "goal": i in overlay.ids_of(goal),
+            "goal": i in of_goal,
         }
         for i in shown
     ]

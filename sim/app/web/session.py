@@ -267,7 +267,7 @@ class SharedAgent:
             "driven_m": metrics.path_length,
             "left_m": metrics.distance_to_goal,
             "shortest_m": metrics.shortest_path,
-            "in_sight": in_sight(images["semantic"], task.goal),
+            "in_sight": in_sight(images["semantic"], task.goal, task.goal_mask(images)),
             "looking": _looking_for(task.goals[task.goal_number]),
             "goals": [asdict(mark) for mark in goal_marks(task)],
         }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import subprocess
 import sys
@@ -231,6 +232,16 @@ def test_a_step_before_a_reset_and_after_one_that_failed_is_refused(env: ObjectN
         env.step(Action.TURN_LEFT)
     env.reset(seed=0)
     env.step(Action.TURN_LEFT)
+
+
+def test_an_episode_that_was_drawn_can_be_repeated_by_its_id(house: Path) -> None:
+    with contextlib.closing(ObjectNavEnv(house=house, camera=SMALL, sensors=())) as env:
+        _, info = env.reset(seed=3)
+        drawn = env.episode
+        env.reset(options={"episode_id": info["episode_id"]})
+        assert env.episode is drawn
+        with pytest.raises(EpisodeError, match="no episode 'another'"):
+            env.reset(options={"episode_id": "another"})
 
 
 def test_a_closed_environment_says_so(house: Path) -> None:

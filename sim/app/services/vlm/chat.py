@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from sim.app.services.client import JSON, Client, ServiceConfig
 from sim.app.services.vlm.pictures import jpeg
 from sim.core.errors import AgentError, ConfigError
-from sim.core.reading import Count, parse_json
+from sim.core.reading import Count, parse_json, printable
 
 T = TypeVar("T")
 MAX_CHARACTERS = 20_000
@@ -146,7 +146,8 @@ def _reader(kind: type[T]) -> Callable[[bytes], tuple[T, _Usage]]:
             raise ConfigError("its reply was cut off at max_tokens.")
         text = _THOUGHTS.sub("", choice.message.content).strip()
         fenced = _FENCED.match(text)
-        reply = parse_json(fenced[1] if fenced else text, kind, where="the model's text")
+        begin = printable(" ".join(text[:200].split()))[:60]
+        reply = parse_json(fenced[1] if fenced else text, kind, where=f"the model's text '{begin}'")
         return reply, completion.usage or _Usage()
 
     return read

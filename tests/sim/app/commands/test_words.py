@@ -63,7 +63,7 @@ def test_houses_that_are_not_needed_are_not_searched(homes, capsys):
 def test_agents_that_take_no_words_get_none_of_these_episodes(homes):
     made(homes, "seen", "again")
     options = {"split": str(homes.parent / "again"), "semantics": "gt", "episodes": 1}
-    with pytest.raises(ConfigError, match="no episode with a goal that the agent knows"):
+    with pytest.raises(ConfigError, match="Agent 'cloned' takes no goals in words"):
         episodes_of(resolve(RunOptions(agent="cloned", **options)))
     setup = resolve(RunOptions(agent="stubborn-plus", **options))
     assert "rgb" in setup.config.sensors
@@ -89,5 +89,5 @@ def test_pictures_are_episodes_of_agents_that_take_them(homes):
     setup = resolve(RunOptions(agent="stubborn-plus", **options))
     assert {"rgb", "goal_picture"} <= set(setup.config.sensors)
     assert len(episodes_of(setup).episodes) == 1
-    with pytest.raises(ConfigError, match="no episode with a goal that the agent knows"):
+    with pytest.raises(ConfigError, match="Agent 'cloned' takes no pictures"):
         episodes_of(resolve(RunOptions(agent="cloned", **options)))

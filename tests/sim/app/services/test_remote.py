@@ -155,8 +155,8 @@ FAULTS: dict[str, tuple[Handler, str, str]] = {
     "trickle": (trickle, "posteriors", "longer than 0.3 s"),
     "closed": (closed, "posteriors", "closed connection|reset"),
     "half": (half, "posteriors", r"ended after \d+ of \d+ bytes"),
-    "empty": (body_of(b""), "posteriors", "cannot be read as an NPY file"),
-    "garbage": (body_of(b"\x00\xff garbage"), "posteriors", "cannot be read as an NPY file"),
+    "empty": (body_of(b""), "posteriors", "is not an NPY file: it is empty"),
+    "garbage": (body_of(b"\x00\xff garbage"), "posteriors", "is not an NPY file: it begins with b'"),
     "code": (pickled, "posteriors", "cannot be read as an NPY file"),
     "500": (body_of(b"<h1>broken\x1b[2J</h1>", 500), "posteriors", "status 500: <h1>broken"),
     "500 without a text": (mute, "posteriors", "status 500: without a text"),
@@ -214,7 +214,7 @@ def test_a_mask_of_another_size_is_refused(start: Start) -> None:
 
 
 def test_no_server_is_one_sentence() -> None:
-    with pytest.raises(AgentError, match=r"127.0.0.1:9/posteriors gave no valid reply in 1 attempts: .*refused"):
+    with pytest.raises(AgentError, match=r"127.0.0.1:9/posteriors gave no valid reply in 1 attempt: .*refused"):
         asking("http://127.0.0.1:9", retries=0).posteriors(view())
 
 

@@ -23,9 +23,10 @@ from sim.app.options import RunOptions
 from sim.app.web.choices import Choices, Offer
 from sim.app.web.controls import EpisodeRequest
 from sim.app.web.driven import DrivenRuns
-from sim.app.web.pictures import NAMES
+from sim.app.web.pictures import NAMES, in_sight
 from sim.app.web.session import Frame, Session, choose_episode
 from sim.core.errors import ConfigError, EpisodeError
+from sim.core.interface import MPCAT40_ID
 from sim.episodes.splits import load_split
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.results import a_result
@@ -296,8 +297,16 @@ def test_a_wish_in_words_is_played_in_a_house_of_a_split(choices, tmp_path):
     assert request.options.goal == "the bed"
     display = play(request, tmp_path / "runs")
     assert display.states[-1]["phase"] == "ended", display.states[-1]
-    assert "Looking for a bed." in [state["message"] for state in display.states]
+    assert "Looking for the bed." in [state["message"] for state in display.states]
     assert display.frames[0].facts["in_sight"]
+
+
+def test_only_the_object_of_a_wish_is_the_goal_in_sight():
+    semantic = np.full((20, 20), MPCAT40_ID["chair"], np.uint8)
+    mask = np.zeros((20, 20), bool)
+    assert [item["goal"] for item in in_sight(semantic, "the black chair", mask)] == [False]
+    mask[:5] = True
+    assert [item["goal"] for item in in_sight(semantic, "the black chair", mask)] == [True]
 
 
 def test_a_wish_that_the_house_cannot_satisfy_is_answered_with_what_is_there(choices, tmp_path):
