@@ -1,4 +1,4 @@
-"""The agent of `my_agent.py` for goals in words: `stubborn run --agent examples.word_agent:AGENT --split words-seen`."""
+"""`my_agent.py` for goals in words: `stubborn run --agent examples.word_agent:AGENT --split words-seen`."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from stubborn.detection.wished import WishedSegmenter
 
 
 class WordWanderer(Wanderer):
-    """Stops at what fills the view and may be meant by the words."""
+    """Stops when objects that the words may mean fill the view."""
 
     def __init__(self, segmenter: Segmenter, camera: CameraModel, config: WandererConfig) -> None:
         self.wished = WishedSegmenter(segmenter, camera)

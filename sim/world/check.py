@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from sim.core.errors import HouseError
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES, SuccessRule
-from sim.core.wishes import ROOMS
 from sim.core.vocabulary import vocabulary
+from sim.core.wishes import ROOMS
 from sim.gl import mujoco
 from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.hazards import Hazard, read_hazards

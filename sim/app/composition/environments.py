@@ -75,7 +75,6 @@ def episodes_of(setup: Setup) -> RunEpisodes:
     try:
         split = env.split
         if options.house is None:
-            known = known_goals(setup)
             fitting = tuple(episode for episode in split.episodes if takes(setup, episode))
             split_of_agent = replace(split, episodes=fitting)
             if not split_of_agent.episodes:
@@ -118,18 +117,19 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
         ConfigError: there are too few different episodes: start and goal are fixed, or few goals can be reached.
     """
     options, (house,) = setup.options, env.split.houses
-    known = known_goals(setup)
     repeats = setup.config.noise != get_noise("none") or bool(env.split.sidecar(house).noise)
     episodes: dict[tuple[str, Pose] | int, Episode] = {}
-    i = last = 0
+    refused, i, last = list[Episode](), 0, 0
     while len(episodes) < options.episodes and i - last <= MAX_REPEATS:
         episode = env.draw_episode(drawing_generator(options.seed, i), episode_id=f"{house}_{len(episodes):04d}")
         key = i if repeats else (episode.goal, episode.start)
         i += 1
-        if takes(setup, episode) and key not in episodes:
+        if not takes(setup, episode):
+            refused.append(episode)
+        elif key not in episodes:
             episodes[key], last = episode, i
     if not episodes:
-        raise _nothing_for(setup, f"House '{house}'", (episode,))
+        raise _nothing_for(setup, f"House '{house}'", refused)
     if len(episodes) < options.episodes:
         raise ConfigError(
             f"House '{house}' has {counted(len(episodes), 'different episode')} with "
@@ -143,13 +143,15 @@ def _nothing_for(setup: Setup, place: str, episodes: Sequence[Episode]) -> Confi
     """Returns the error for episodes of which the agent takes none."""
     kinds = {goal.kind for episode in episodes for goal in episode.specs}
     agent = setup.options.agent
-    if kinds <= {"words", "description"} and not setup.spec.words:
+    if kinds <= {"words", "description"} and setup.spec.words is None:
         return ConfigError(
-            f"Agent '{agent}' takes no goals in words; an agent declares them with AgentSpec.words (docs/words.md#agents)."
+            f"Agent '{agent}' takes no goals in words; an agent declares them with AgentSpec.words "
+            "(docs/words.md#agents)."
         )
-    if kinds == {"picture"} and not setup.spec.pictures:
+    if kinds == {"picture"} and setup.spec.pictures is None:
         return ConfigError(
-            f"Agent '{agent}' takes no pictures as goals; an agent declares them with AgentSpec.pictures (docs/words.md)."
+            f"Agent '{agent}' takes no pictures as goals; an agent declares them with AgentSpec.pictures "
+            "(docs/words.md)."
         )
     known = ", ".join(known_goals(setup))
     return ConfigError(f"{place} has no episode with a goal that the agent '{agent}' knows: {known}.")

@@ -63,8 +63,12 @@ def test_a_users_house_with_a_wrong_text_about_an_object_has_a_fault(text: str, 
 
 
 @pytest.mark.parametrize(
-    ("name", "hint"), [("side table", None), ("refrigerator", "; a known name is 'fridge'"), ("samovar", "; a known name is 'pot'"), ("gizmo", "")]
-)
+    ("name", "hint"),
+    [
+        ("side table", None), ("refrigerator", "; a known name is 'fridge'"), ("samovar", "; a known name is 'pot'"),
+        ("gizmo", ""),
+    ],
+)  # fmt: skip
 def test_a_name_that_no_goal_can_ask_for_is_remarked(name: str, hint: str | None) -> None:
     faults, remarks = check_own_house(with_facts(table(room(5, 4)), table_00=f"name: {name}"))
     known = f"the name '{name}' of 'table_00' is no everyday name that goals in words know{hint}"

@@ -91,6 +91,8 @@ function showState(news) {
     document.body.classList.remove("hit");
     for (const figure of figures.values()) figure.classList.replace("absent", "empty") || figure.classList.add("empty");
   }
+  // Nothing was shown of an episode that failed before its first step: the house is shown again.
+  if (["failed", "idle"].includes(news.phase) && document.body.dataset.step === "-1") delete document.body.dataset.step;
   const outcome = news.phase === "ended" ? news.outcome : null;
   seen ||= news.phase !== "ended";
   closed = Boolean(outcome) && (closed || !seen);

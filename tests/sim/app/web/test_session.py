@@ -98,8 +98,9 @@ def test_the_world_can_be_shown_before_the_first_action() -> None:
     shown: list[Frame] = []
     metrics = metrics_without_episode(None)
     task = SimpleNamespace(
-        goal_metrics=lambda: metrics, num_steps=0, goal="bed", is_chain=False, goals=[GoalSpec.of("bed")], goal_number=0
-    )
+        goal_metrics=lambda: metrics, num_steps=0, goal="bed", is_chain=False, goals=[GoalSpec.of("bed")],
+        goal_number=0, goal_mask=lambda images: images["semantic"] > 0,
+    )  # fmt: skip
     env = SimpleNamespace(
         truth_images={"semantic": np.zeros((4, 4), np.uint8)},
         scene=SimpleNamespace(task=task),

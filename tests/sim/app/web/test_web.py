@@ -444,6 +444,17 @@ def test_descriptions_that_ship_for_a_house_are_proposed_to_the_stronger_agent(
     assert browser.run("return document.getElementById('wishes').children.length") == 0
 
 
+def test_a_wish_that_the_house_cannot_satisfy_shows_the_house_again(server: Server, browser: Browser) -> None:
+    browser.visit(server.address)
+    wait_for(lambda: browser.run("return above !== null && state.phase !== 'running'"))
+    with server.connect() as client:
+        client.send(json.dumps({"do": "start", **WISH, "agent": "stubborn-plus", "goal": "a kettle"}))
+        wait_for(lambda: browser.run("return state.phase") == "failed")
+    assert "has no 'kettle'" in browser.run("return document.getElementById('message').textContent")
+    wait_for(lambda: browser.run("return document.getElementById('above').offsetHeight > 0"))
+    assert browser.console_errors() == []
+
+
 def test_the_form_hides_no_text_and_its_buttons_need_no_row_of_their_own(server: Server, browser: Browser) -> None:
     browser.visit(server.address)
     wait_for(lambda: browser.run("return document.getElementById('agent-note').textContent"))
